@@ -1,8 +1,11 @@
-//! Embeds the kernels' compressed PTX, with feature `cuda`; and says to the tests whether there are public test data.
+//! Embeds the kernels' compressed PTX, with feature `cuda`. Sets the cfg `public_data` if there are
+//! public test data.
 //!
-//! The PTX in the kernels' package is taken if it carries the stamp of the sources beside it. Otherwise the kernels are
-//! compiled, if this machine has a device compiler (kernels/ptx.sh); if it has none, the build stops.
-//! The library gets `NEARMISS_STAMP` (16 hex digits) from the environment and the text from `OUT_DIR`.
+//! The PTX in the kernels' package is used if it has the stamp of the kernels' sources. Otherwise
+//! the kernels are compiled, if this machine has a device compiler (kernels/ptx.sh); if it has
+//! none, the build stops.
+//! The library gets `NEARMISS_STAMP` (16 hex digits) from the environment and the text from
+//! `OUT_DIR`.
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
@@ -11,8 +14,8 @@ fn main() {
     ptx::embed();
 }
 
-/// Sets `public_data` where the folder of public test data is: `NEARMISS_DATA`, else beside the repository. Without it the tests that
-/// need it are ignored.
+/// Sets `public_data` if the folder of public test data exists: `NEARMISS_DATA`, else a folder next
+/// to the repository. Otherwise the tests that need it are ignored.
 fn look_for_test_data() {
     println!("cargo::rustc-check-cfg=cfg(public_data)");
     println!("cargo::rerun-if-env-changed=NEARMISS_DATA");
@@ -34,7 +37,8 @@ mod ptx {
 
     pub fn embed() {
         let folder = |name| PathBuf::from(env::var_os(name).unwrap_or_else(|| panic!("cargo sets {name}")));
-        // What kernels/build.rs tells: the folder of that package, in this repository or in a registry.
+        // The output of kernels/build.rs: the folder of that package, in this repository or in a
+        // registry.
         let (kernels, out) = (folder("DEP_NEARMISS_KERNELS_ROOT"), folder("OUT_DIR"));
         for path in ["src", "Cargo.toml", PTX] {
             println!("cargo::rerun-if-changed={}", kernels.join(path).display());
@@ -52,7 +56,7 @@ mod ptx {
         println!("cargo::rustc-env=NEARMISS_STAMP={stamp}");
     }
 
-    /// Whether the first line of a compressed text names the stamp.
+    /// Whether the first line of a compressed text contains the stamp.
     fn is_made_from(compressed: &[u8], stamp: &str) -> bool {
         let mut first = String::new();
         ruzstd::decoding::StreamingDecoder::new(compressed)
@@ -60,8 +64,9 @@ mod ptx {
             && first.contains(&format!("sources {stamp},"))
     }
 
-    /// As `kernels/ptx.sh stamp` (tests/gpu/ptx.rs compares): a digest over one line a file, "digest  kernels/name". A file's digest
-    /// is that of its compiled lines: none that is blank or only a comment.
+    /// The stamp, as `kernels/ptx.sh stamp` prints it (tests/gpu/ptx.rs compares): a digest over
+    /// one line per file, "digest  kernels/name". A file's digest is that of its compiled lines:
+    /// all except blank lines and comments.
     fn stamp(kernels: &Path) -> String {
         let mut names = vec!["Cargo.toml".to_owned()];
         rust_files(kernels, &kernels.join("src"), &mut names);
@@ -69,7 +74,7 @@ mod ptx {
         let mut all = Sha256::new();
         for name in names {
             let path = kernels.join(&name);
-            // A package's manifest is rewritten; what was written by hand lies beside it.
+            // Packaging rewrites the manifest; the original file is next to it.
             let original = kernels.join("Cargo.toml.orig");
             let path = if name == "Cargo.toml" && original.exists() { original } else { path };
             let text = fs::read_to_string(path).expect("a kernel source is readable");
@@ -98,16 +103,15 @@ mod ptx {
     }
 
     fn compile(kernels: &Path, out: &Path, text: &Path, stamp: &str) {
-        // A build script that runs cargo needs another target folder: the outer cargo holds the lock of its own.
+        // A build script that runs cargo needs another target folder: the outer cargo holds the
+        // lock of its own.
         let target = out.ancestors().nth(4).unwrap_or(out).join("ptx");
         let script = kernels.join("ptx.sh");
         let built =
             Command::new(&script).arg("build").arg(text).env("NEARMISS_PTX_TARGET_DIR", target).output();
         let why = match built {
             Ok(done) if done.status.success() => {
-                println!(
-                    "cargo::warning=kernels/{PTX} is not made from the present kernels; they were compiled anew"
-                );
+                println!("cargo::warning=kernels/{PTX} is stale; the kernels were compiled again");
                 return;
             }
             Ok(done) => String::from_utf8_lossy(&done.stderr).into_owned(),
@@ -115,13 +119,11 @@ mod ptx {
         };
         eprintln!("{why}");
         eprintln!(
-            "The kernels' sources (stamp {stamp}) are not those that {} was made from, and they could not be compiled",
+            "{} is stale (stamp of the sources: {stamp}), and the kernels could not be compiled: see above.",
             kernels.join(PTX).display()
         );
-        eprintln!(
-            "here; the reason is above. With a device compiler (kernels/ptx.sh fetch) this builds by itself; to renew"
-        );
-        eprintln!("the committed file: kernels/ptx.sh build kernels/{PTX}");
+        eprintln!("Install a device compiler (kernels/ptx.sh fetch), or renew the committed file:");
+        eprintln!("kernels/ptx.sh build kernels/{PTX}");
         std::process::exit(1);
     }
 }

@@ -1,5 +1,7 @@
-//! Nanoseconds a call of the narrow tests on one core, and the boxes of their searches: `cargo bench --bench prim`, for one of
-//! them `-- calls`, `-- cloth` or `-- boxes`. The last two read the public frames, and are left out without them.
+//! Time per call of the narrow tests on one core, in nanoseconds, and the boxes of their searches:
+//! `cargo bench --bench prim`.
+//! `-- calls`, `-- cloth` or `-- boxes` runs one of them. The last two read the public frames, and
+//! are skipped without them.
 
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::{Moving, ee_apart, ee_toi, vf_apart, vf_toi};
@@ -16,13 +18,13 @@ use support::candidates::scene;
 use support::triangles::{anywhere, corners, on_grid, random};
 
 fn main() {
-    let asked: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
-    let is_asked = |name: &str| asked.is_empty() || asked.iter().any(|word| name.contains(word.as_str()));
-    if is_asked("calls") {
+    let names: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
+    let is_chosen = |name: &str| names.is_empty() || names.iter().any(|word| name.contains(word.as_str()));
+    if is_chosen("calls") {
         calls();
     }
     let meters: [(&str, fn()); 2] = [("cloth", cloth), ("boxes", boxes)];
-    for (name, meter) in meters.into_iter().filter(|(name, _)| is_asked(name)) {
+    for (name, meter) in meters.into_iter().filter(|(name, _)| is_chosen(name)) {
         if cfg!(public_data) { meter() } else { eprintln!("{name}: no public frames (set NEARMISS_DATA)") }
     }
 }
@@ -44,7 +46,7 @@ fn pairs<R: Real>(mut t: impl FnMut() -> Triangle, n: usize) -> Vec<Pair<R>> {
     (0..n).map(|_| [corners(&t()), corners(&t())]).collect()
 }
 
-/// Single tests of random triangles and of such on a small grid.
+/// Single tests of random triangles, in the unit cube and on a small grid.
 fn calls() {
     let mut r = random(31);
     let near = pairs::<f32>(|| anywhere(&mut r), 20_000);
@@ -85,7 +87,7 @@ fn calls() {
     time("ee_toi f32 in f64, random", &moving, |[p, a, b, c]| ee_toi::<f32, f64>([*p, *a], [*b, *c]));
 }
 
-/// The certified answer for four points: vertex and face, or two edges.
+/// The certified answer for four points: a vertex and a face, or two edges.
 fn certified<R: Real, S: Grid>([p, q, r, s]: [Moving<R>; 4], face: bool, params: &Params) -> Verdict {
     if face {
         vf_certified::<R, S>(p, [q, r, s], params)
@@ -94,14 +96,14 @@ fn certified<R: Real, S: Grid>([p, q, r, s]: [Moving<R>; 4], face: bool, params:
     }
 }
 
-/// The two passes, f32 and then f64.
+/// Both passes, f32 and then f64.
 fn in_passes<R: Real>(points: [Moving<R>; 4], face: bool, params: &Params) -> Verdict {
     let [p, q, r, s] = points;
     let first = if face { vf_first(p, [q, r, s], params) } else { ee_first([p, q], [r, s], params) };
     first.unwrap_or_else(|| certified::<R, f64>(points, face, params))
 }
 
-/// Nanoseconds a candidate of real cloth on one core.
+/// Time per candidate of real cloth on one core, in nanoseconds.
 fn cloth() {
     let (all, _, mean) = scene("cloth-ball", "cloth_ball92", "cloth_ball93");
     let p = Params::new(1e-4 * mean);
@@ -137,7 +139,7 @@ fn cloth() {
     }
 }
 
-/// How many boxes the searches of real cloth take.
+/// Numbers of boxes in the searches of real cloth.
 fn boxes() {
     let (all, _, mean) = scene("cloth-ball", "cloth_ball92", "cloth_ball93");
     let p = Params::new(1e-4 * mean);

@@ -1,7 +1,8 @@
 //! Stages and frames on the CPU: `cargo bench --bench stages`. See `benches/README.md`.
 //!
-//! Criterion times what can be asked alone: `construct` and whole frames. The stages of a frame cannot, so each
-//! frame's own clock is read, and their medians are printed after it. Public scenes are timed where their files are.
+//! Criterion times `construct` and whole frames. The stages of a frame cannot run separately, so
+//! each frame's own clock is read, and their medians are printed at the end. Public scenes are
+//! timed if their files exist.
 
 use criterion::{Bencher, BenchmarkId, Criterion, criterion_group, criterion_main};
 use nearmiss::device::Backend;
@@ -38,7 +39,7 @@ fn threads() -> Vec<usize> {
 fn detector(body: &Body, threads: usize, query: Query) -> OneQuery {
     let device = Device::open(Backend::Cpu, Some(threads)).expect("a CPU");
     let mut detector = OneQuery::new(device, vec![body.clone()], query).expect("a detector");
-    // Lists grow to the demand once.
+    // Lists grow to the demand in this frame.
     detector.detect().expect("an answer");
     detector
 }
@@ -69,7 +70,7 @@ fn frames(c: &mut Criterion) {
                 let mut seen = Vec::new();
                 group
                     .bench_function(BenchmarkId::new(*name, threads), |b| frame(b, &mut detector, &mut seen));
-                // Nothing was timed where a filter left this one out.
+                // A filter may have skipped this one: then no time is there.
                 if !seen.is_empty() {
                     report.push((*name, query.kind(), threads, seen));
                 }
@@ -88,7 +89,7 @@ fn frames(c: &mut Criterion) {
     }
 }
 
-/// Scenes that nothing tells apart, on one thread: microseconds a candidate.
+/// Scenes without separable features, on one thread: microseconds per candidate.
 fn hard_frames(c: &mut Criterion) {
     let mut report = Vec::new();
     let mut group = c.benchmark_group("hard");

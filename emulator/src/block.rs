@@ -20,11 +20,11 @@ pub trait Watch: Copy {
     fn device(&self, access: Access, addr: u64, bytes: usize, inside: bool, place: Place) -> bool;
     /// An access to shared memory; false forbids it.
     fn shared(&self, access: Access, offset: u32, bytes: usize, inside: bool, place: Place) -> bool;
-    /// An access that might only have looked, [`Access::Swap`], has changed memory.
+    /// An access that might only have read, [`Access::Swap`], has changed memory.
     fn changed(&self);
-    /// A lane takes part in an atomic: a phase that takes long mostly does so again and again.
+    /// A lane takes part in an atomic; long phases mostly do so repeatedly.
     fn draws(&self);
-    /// A barrier of the block: another block may go on.
+    /// A barrier of the block: another block may continue.
     fn barrier(&self);
 }
 
@@ -38,15 +38,15 @@ pub struct Emulated<W> {
     lanes: u32,
     /// Phases and collectives so far: accesses in different ones are ordered.
     phase: u32,
-    /// Shared memory, and how many bytes of it are given out.
+    /// Shared memory, and its allocated bytes.
     words: Vec<u64>,
     taken: u32,
-    /// Memory of rows.
+    /// Memory for rows.
     rows: Vec<u64>,
     watch: W,
 }
 
-/// One lane of it, in one phase.
+/// One lane of a block, in one phase.
 pub struct EmulatedLane<W> {
     place: Place,
     global: u32,
@@ -55,7 +55,7 @@ pub struct EmulatedLane<W> {
     watch: W,
 }
 
-/// A value of each lane.
+/// One value per lane.
 pub struct PerLane<T>(Vec<T>);
 
 impl<T, W> Slot<T, EmulatedLane<W>> for PerLane<T> {
@@ -81,7 +81,7 @@ impl<W: Watch> Emulated<W> {
     }
 }
 
-/// The address of element `i`, if the watcher lets us have it.
+/// The address of element `i`, if the watcher permits the access.
 #[inline(always)]
 fn device<T, W: Watch>(watch: &W, access: Access, span: Span<T>, i: u32, place: Place) -> Option<*mut T> {
     let addr = span.addr().wrapping_add(i as u64 * size_of::<T>() as u64);
@@ -323,7 +323,7 @@ impl<W: Watch> Block for Emulated<W> {
         watch.barrier();
     }
     fn load<T: Pod>(&self, span: Span<T>, i: u32) -> T {
-        // Every lane reads it: no lane may write it in this phase.
+        // Every lane reads it, so no lane may write it in this phase.
         let place = Place { block: self.block, phase: self.phase, lane: EVERY_LANE };
         match device(&self.watch, Access::Read, span, i, place) {
             // SAFETY: as for `EmulatedLane::read`.

@@ -1,17 +1,15 @@
-//! Device memory that blocks of one launch share: relaxed atomic pieces, so that accesses that meet
-//! are no data race.
+//! Device memory that blocks of one launch share. Accesses are relaxed atomic pieces, so that
+//! concurrent ones are no data race.
 
 use bytemuck::Pod;
 use nearmiss_kernels::exec::whole_words;
 use std::mem::MaybeUninit;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 
-/// Reads a `T` in pieces of its alignment, of 8 bytes at most: the size of the atomics that may
-/// meet it.
+/// Reads a `T` in pieces of its alignment, of 8 bytes at most: the size of concurrent atomics.
 ///
 /// # Safety
-/// `from` is aligned, valid memory that others touch at the same time only in atomic pieces of this
-/// size.
+/// `from` is aligned, valid memory. Concurrent accesses to it are atomic pieces of this size.
 #[inline(always)]
 pub unsafe fn load<T: Pod>(from: *mut T) -> T {
     let words = const { whole_words::<T>() };
@@ -34,7 +32,7 @@ pub unsafe fn load<T: Pod>(from: *mut T) -> T {
     }
 }
 
-/// Writes a `T` in such pieces.
+/// Writes a `T` in pieces, as [`load`] reads it.
 ///
 /// # Safety
 /// As for [`load`].

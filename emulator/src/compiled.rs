@@ -1,4 +1,4 @@
-//! Every kernel of the table, compiled here for the emulator: a crate that launches one does not
+//! Every kernel of the table, compiled here for the emulator. A crate that launches one does not
 //! compile it again.
 
 use crate::{Emulator, Error, Interrupt};
@@ -19,7 +19,7 @@ impl Visit for All {
     }
 }
 
-/// All of them. Not generic, so that they are compiled here.
+/// All kernels. Not generic, so that they are compiled here.
 fn all() -> &'static All {
     static ALL: OnceLock<All> = OnceLock::new();
     ALL.get_or_init(|| {
@@ -30,7 +30,7 @@ fn all() -> &'static All {
 }
 
 /// # Safety
-/// As of [`Emulator::launch`], and `args` points to the kernel's arguments.
+/// As for [`Emulator::launch`], and `args` points to the kernel's arguments.
 unsafe fn run<E: Entry>(
     emulator: &Emulator,
     blocks: u32,
@@ -44,10 +44,10 @@ unsafe fn run<E: Entry>(
 /// Runs the kernel at that place of the table.
 ///
 /// # Safety
-/// As of [`Emulator::launch`].
+/// As for [`Emulator::launch`].
 ///
 /// # Panics
-/// When another kernel is there.
+/// If another kernel is there.
 pub unsafe fn launch<E: Entry>(
     emulator: &Emulator,
     place: usize,

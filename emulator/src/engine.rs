@@ -1,4 +1,4 @@
-//! The engine's observer on a block: it checks no access, and ends the block when work is to end.
+//! The engine's observer on a block. It checks no access, and ends the block if work is to end.
 
 use crate::block::Watch;
 use crate::interrupt::Looks;
@@ -10,8 +10,8 @@ use crate::turns::Stop;
 pub struct Looking<'a>(pub &'a Looks<'a>);
 
 impl Looking<'_> {
-    /// Leaves the kernel when work is to end. Programs that abort on a panic cannot leave one:
-    /// their blocks run to their end.
+    /// Leaves the kernel if work is to end. Programs that abort on a panic cannot leave one: their
+    /// blocks run to their end.
     #[inline(always)]
     fn look(&self) {
         if cfg!(panic = "unwind") && self.0.ends() {

@@ -1,19 +1,20 @@
-//! Ending work early: a flag that any thread sets, and that work reads between blocks and phases.
+//! Interruption of work: a flag that any thread sets, and that work polls between blocks and
+//! phases.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering::Relaxed};
 
 /// Work goes on.
 const CALM: u32 = 0;
-/// Work ends at its next look.
+/// Work ends at its next poll.
 const TRIGGERED: u32 = 1;
-/// Looks are counted, and the last one triggers.
+/// Polls are counted, and the last one triggers.
 const COUNTING: u32 = 2;
 
 /// The shared state of clones.
 struct State {
     stage: AtomicU32,
-    /// Looks until it triggers; only while they are counted.
+    /// Polls until it triggers; valid only while they are counted.
     left: AtomicU64,
 }
 
@@ -69,42 +70,42 @@ impl Interrupt {
         Interrupt(Arc::new(State::new()))
     }
 
-    /// Ends the call that runs, or else the next one. One atomic store: safe in a signal handler.
+    /// Ends the running call, or else the next one. One atomic store: safe in a signal handler.
     pub fn trigger(&self) {
         self.0.stage.store(TRIGGERED, Relaxed);
     }
 
-    /// Takes back a trigger that has ended no call yet.
+    /// Clears a trigger that has ended no call yet.
     pub fn clear(&self) {
         self.0.stage.store(CALM, Relaxed);
     }
 
-    /// Whether it was triggered, and has ended no call yet.
+    /// Whether the handle was triggered and has ended no call yet.
     pub fn is_triggered(&self) -> bool {
         self.0.stage.load(Relaxed) == TRIGGERED
     }
 
-    /// Triggers itself at the look of that number, counted from 1: for tests, which end work at the
-    /// same place each time.
+    /// Triggers at the poll of that number, counted from 1. Tests end work at the same place each
+    /// time with it.
     #[doc(hidden)]
     pub fn trigger_at(&self, look: u64) {
         self.0.left.store(look, Relaxed);
         self.0.stage.store(COUNTING, Relaxed);
     }
 
-    /// Looks that [`Interrupt::trigger_at`] has left.
+    /// Polls left until [`Interrupt::trigger_at`] triggers.
     #[doc(hidden)]
     pub fn looks_left(&self) -> u64 {
         self.0.left.load(Relaxed)
     }
 
-    /// Whether both are clones of one.
+    /// Whether both are clones of one handle.
     pub fn is(&self, other: &Interrupt) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
 }
 
-/// The polls of one piece of work, and whether one of them ended it. That remains so even if the
+/// The polls of one piece of work. Once a poll has ended the work, it stays ended, even if the
 /// handle is cleared meanwhile.
 pub struct Looks<'a> {
     state: &'a State,
@@ -112,7 +113,7 @@ pub struct Looks<'a> {
 }
 
 impl<'a> Looks<'a> {
-    /// Polls for work that the handle may end; `None` for no handle.
+    /// Polls for work that `interrupt` may end; `None` for no handle.
     pub fn new(interrupt: Option<&'a Interrupt>) -> Looks<'a> {
         Looks { state: interrupt.map_or(&NEVER, |interrupt| &interrupt.0), ended: AtomicBool::new(false) }
     }
@@ -129,7 +130,7 @@ impl<'a> Looks<'a> {
         true
     }
 
-    /// Whether a look has ended the work.
+    /// Whether a poll has ended the work.
     pub fn ended(&self) -> bool {
         self.ended.load(Relaxed)
     }
@@ -147,7 +148,7 @@ mod tests {
         interrupt.clone().trigger();
         assert!(interrupt.is_triggered() && !looks.ended() && looks.ends());
         interrupt.clear();
-        assert!(looks.ended() && !Looks::new(Some(&interrupt)).ends(), "what has ended stays so");
+        assert!(looks.ended() && !Looks::new(Some(&interrupt)).ends(), "ended work stays ended");
         assert!(!Looks::new(None).ends());
     }
 

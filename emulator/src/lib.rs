@@ -35,18 +35,18 @@ pub enum Error {
     /// The threads cannot be started.
     #[error("starting {threads} threads: {text}")]
     Threads {
-        /// How many.
+        /// Number of threads.
         threads: usize,
         /// The system's text.
         text: String,
     },
-    /// The threads are not here.
-    #[error("threads of the process that this one was forked from")]
+    /// The process was forked after threads were started.
+    #[error("this process was forked and has no threads")]
     Forked,
     /// The machine has no more memory.
     #[error("{bytes} bytes of host memory were needed")]
     Memory {
-        /// The number of bytes requested.
+        /// Number of bytes requested.
         bytes: usize,
     },
     /// An [`Interrupt`] has ended the launch: its memory is half written.
@@ -55,45 +55,45 @@ pub enum Error {
     /// A kernel broke a rule.
     #[error("kernel {kernel}: {fault}")]
     Rule {
-        /// Its name.
+        /// Name of the kernel.
         kernel: &'static str,
         /// The fault, with its place.
         fault: Fault,
     },
 }
 
-/// How the emulator runs.
+/// Mode of the emulator.
 #[derive(Clone, Copy, Debug, Default)]
 pub enum Mode {
     /// Blocks in parallel on all cores, lanes in order, without checks: the engine for machines
     /// without a GPU.
     #[default]
     Engine,
-    /// Blocks in sequence, each to its end, blocks and lanes in the given order (or interleaved,
-    /// see [`Emulator::with_interleave`]). Races, bounds, unwritten memory and endless waits are
-    /// detected.
+    /// Blocks in sequence, each to its end, with blocks and lanes in this order (or interleaved,
+    /// see [`Emulator::with_interleave`]). Detects races, accesses out of bounds, reads of
+    /// unwritten memory and endless waits.
     Sanitizer(Order),
 }
 
-/// Whether this is the process that first started threads: one that was forked since has none of
-/// them, and would wait for ever.
+/// Checks that this is the process that first started threads. A process that was forked since has
+/// none of them, and would wait for ever.
 fn has_threads() -> Result<(), Error> {
     static STARTED_BY: OnceLock<u32> = OnceLock::new();
     let own = std::process::id();
     if *STARTED_BY.get_or_init(|| own) == own { Ok(()) } else { Err(Error::Forked) }
 }
 
-/// Starts the threads that all of a program shares, if they do not run yet: else the first to need
-/// them would panic if they cannot be started.
+/// Starts the program's shared threads, if they do not run yet. If they failed to start later, at
+/// their first use, that would panic.
 ///
 /// # Errors
-/// [`Error::Threads`]; the same each time, as they are started once. [`Error::Forked`] in a process
+/// [`Error::Threads`], the same each time: they are started once. [`Error::Forked`] in a process
 /// that was forked since.
 pub fn start_threads() -> Result<(), Error> {
     has_threads()?;
     static STARTED: OnceLock<Result<(), String>> = OnceLock::new();
     let started = STARTED.get_or_init(|| match rayon::ThreadPoolBuilder::new().build_global() {
-        // Without a source it is that they run already.
+        // An error without a source means that they run already.
         Err(error) if error.source().is_some() => Err(error.to_string()),
         _ => Ok(()),
     });
@@ -112,8 +112,8 @@ impl Emulator {
     /// An engine on `threads` threads, or on all cores; or a sanitizer, always on one thread.
     ///
     /// # Errors
-    /// [`Error::Threads`] when the threads cannot be started; [`Error::Forked`] in a process that
-    /// was forked after some were.
+    /// [`Error::Threads`] if the threads cannot be started; [`Error::Forked`] in a process that was
+    /// forked after some were.
     pub fn new(mode: Mode, threads: Option<usize>) -> Result<Self, Error> {
         has_threads()?;
         let pool = match threads {
@@ -139,16 +139,17 @@ impl Emulator {
         Emulator { lanes: Some(lanes), ..self }
     }
 
-    /// The same sanitizer, with blocks that interleave. Up to 64 run at once, and one of them moves
-    /// at a time. Another continues at the ends of phases and at some accesses that blocks may
-    /// share (atomics, relaxed stores and loads). `seed` determines which. For kernels whose blocks
-    /// cooperate in a launch. Cost: microseconds a change. The engine is unchanged.
+    /// The same sanitizer, with interleaved blocks. Up to 64 run at once, and one of them moves at
+    /// a time. Another continues at the ends of phases and at some accesses that blocks may share
+    /// (atomics, relaxed stores and loads). `seed` determines which.
+    /// For kernels whose blocks cooperate in a launch. Cost: microseconds a change. An engine stays
+    /// as it is.
     pub fn with_interleave(self, seed: u64) -> Self {
         let sanitizer = self.sanitizer.map(|sanitizer| Sanitizer::new(sanitizer.order(), Some(seed)));
         Emulator { sanitizer, ..self }
     }
 
-    /// How many threads run blocks.
+    /// Number of threads that run blocks.
     pub fn threads(&self) -> usize {
         match (&self.sanitizer, &self.pool) {
             (Some(_), _) => 1,
@@ -170,7 +171,7 @@ impl Emulator {
     /// Takes memory of at least `bytes`: zeroed for the engine, poisoned under the sanitizer.
     ///
     /// # Errors
-    /// [`Error::Memory`] when the machine has no more.
+    /// [`Error::Memory`] if the machine has no more.
     pub fn memory(&self, bytes: usize) -> Result<Memory, Error> {
         let memory = Memory::new(bytes)?;
         if let Some(sanitizer) = &self.sanitizer {
@@ -200,7 +201,7 @@ impl Emulator {
         args: &E::Args,
         interrupt: Option<&Interrupt>,
     ) -> Result<(), Error> {
-        // A constant for each kernel, so that one of the table is not compiled again at each
+        // A constant for each kernel, so that a kernel of the table is not compiled again at each
         // launch.
         if const { E::PLACE.is_some() } {
             let place = E::PLACE.unwrap_or_default();
@@ -243,7 +244,7 @@ impl Emulator {
                 }
             };
             let run = || {
-                // One block is not worth a thread's waking up.
+                // One block is not worth waking a thread.
                 if blocks == 1 { block(0) } else { (0..blocks).into_par_iter().for_each(block) }
             };
             let all = || match &self.pool {
@@ -256,14 +257,14 @@ impl Emulator {
     }
 }
 
-/// Memory that kernels reach by address: 16-byte aligned, zeroed.
+/// Memory that kernels access by address: 16-byte aligned, zeroed.
 pub struct Memory {
     start: NonNull<u128>,
     len: usize,
 }
 
-// SAFETY: an allocation like a Box; all access goes through the owner or through kernels under the
-// rules of `Lane`.
+// SAFETY: an allocation like a Box; only its owner accesses it, and kernels under the rules of
+// `Lane`.
 unsafe impl Send for Memory {}
 // SAFETY: as above.
 unsafe impl Sync for Memory {}
@@ -281,7 +282,7 @@ impl Memory {
     pub fn addr(&self) -> u64 {
         self.start.as_ptr().expose_provenance() as u64
     }
-    /// How many bytes there are.
+    /// Number of bytes.
     pub fn bytes(&self) -> usize {
         16 * self.len
     }
@@ -304,7 +305,7 @@ impl Memory {
 impl Drop for Memory {
     fn drop(&mut self) {
         // The layout was valid in `new`, so it is now.
-        let layout = std::alloc::Layout::array::<u128>(self.len).expect("a layout that was valid before");
+        let layout = std::alloc::Layout::array::<u128>(self.len).expect("a valid layout");
         // SAFETY: allocated in `new` with this layout, freed once.
         unsafe { std::alloc::dealloc(self.start.as_ptr().cast(), layout) }
     }

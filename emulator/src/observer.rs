@@ -18,7 +18,7 @@ pub struct BlockObserver<'a> {
 }
 
 impl<'a> BlockObserver<'a> {
-    /// An observer on a block that begins: its shared memory is new.
+    /// An observer on a block that begins, with new shared memory.
     pub fn new(
         sanitizer: &'a Sanitizer,
         scheduler: Option<(&'a TurnScheduler, usize)>,

@@ -1,4 +1,4 @@
-//! In which order blocks and lanes run: no answer may depend on it.
+//! The order of blocks and lanes, on which no answer may depend.
 
 /// An order of blocks in a launch, and of lanes in a phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -7,7 +7,7 @@ pub enum Order {
     Forward,
     /// …, 2, 1, 0
     Reverse,
-    /// A permutation drawn from a number, another one each launch and phase.
+    /// A permutation by a number, another one for each launch and phase.
     Shuffled(u64),
 }
 

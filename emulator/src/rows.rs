@@ -1,9 +1,9 @@
-//! Functions of rows, applied to many rows in one go.
+//! Functions of rows, applied to many rows at once.
 
 use bytemuck::Zeroable;
 use nearmiss_kernels::exec::RowMap;
 
-/// Rows that are mapped side by side: two vectors of f32 on most machines, or one.
+/// Rows that are mapped together: two vectors of f32 on most machines, or one.
 const WIDTH: usize = 16;
 
 /// Rows by columns, [`WIDTH`] at a time: number `k` of row `i` is
@@ -16,7 +16,7 @@ impl<'a, M: RowMap> Rows<'a, M> {
     /// Numbers of a row.
     const NUMBERS: usize = size_of::<M::Row>() / size_of::<M::Number>();
 
-    /// So many rows, of any numbers, in memory that is there from earlier ones.
+    /// `len` rows with any numbers, in memory of earlier rows.
     pub fn new(len: usize, memory: &'a mut Vec<u64>) -> Self {
         let columns = len.div_ceil(WIDTH) * Self::NUMBERS;
         let words = columns * size_of::<[M::Number; WIDTH]>() / size_of::<u64>();
@@ -41,7 +41,7 @@ impl<'a, M: RowMap> Rows<'a, M> {
         row::<M>(&self.columns[i / WIDTH * Self::NUMBERS..], i % WIDTH)
     }
 
-    /// The result of each row in vectors, or [`OPEN`](nearmiss_kernels::exec::OPEN).
+    /// The result of each row by vector code, or [`OPEN`](nearmiss_kernels::exec::OPEN).
     pub fn at_once(&self, map: &M) -> Vec<u32> {
         let mut results = vec![[0; WIDTH]; self.columns.len() / Self::NUMBERS];
         at_once(map, self.columns, &mut results);
@@ -64,7 +64,7 @@ fn at_once_avx2<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mu
     each(map, columns, results);
 }
 
-/// The inner loop becomes vectors.
+/// The compiler vectorises the inner loop.
 #[inline(always)]
 fn each<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [[u32; WIDTH]]) {
     for (columns, results) in columns.chunks_exact(Rows::<M>::NUMBERS).zip(results) {
@@ -77,7 +77,7 @@ fn each<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [[u32;
     }
 }
 
-/// Rows whose numbers are all f32 are mapped as such: side by side if there are some.
+/// Maps rows whose numbers are all f32, in vectors if there are several.
 #[inline(always)]
 fn singles<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [u32; WIDTH]) {
     let mut are_single = [false; WIDTH];
@@ -96,7 +96,7 @@ fn singles<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [u3
     }
 }
 
-/// A row, of its columns.
+/// A row, from its columns.
 #[inline(always)]
 fn row<M: RowMap>(columns: &[[M::Number; WIDTH]], place: usize) -> M::Row {
     let mut row = M::Row::zeroed();
@@ -112,7 +112,7 @@ mod tests {
     use super::{Rows, WIDTH, each};
     use nearmiss_kernels::exec::RowMap;
 
-    /// The result for a row of four: comparisons, a division, a choice; as in kernels' maps.
+    /// A map of four numbers with comparisons, a division and a choice, as in kernels' maps.
     struct Mixed;
 
     impl RowMap for Mixed {
@@ -125,7 +125,7 @@ mod tests {
         }
     }
 
-    /// Numbers of all kinds, and rows that do not fill the last strip.
+    /// Numbers of all kinds, in rows that do not fill the last strip.
     fn rows() -> Vec<[[f32; 2]; 2]> {
         let kinds =
             [0.0, -0.0, 1.0, -3.5, 1e-42, -1e38, f32::MIN_POSITIVE, f32::INFINITY, f32::NEG_INFINITY, 0.1];
@@ -133,8 +133,8 @@ mod tests {
         (0..5 * WIDTH + 3).map(|i| [[pick(i, 0), pick(i, 1)], [pick(i, 2), pick(i, 3)]]).collect()
     }
 
-    /// NaN has many bits, and none is promised.
-    fn told(bits: u32) -> u32 {
+    /// One bit pattern for every NaN: results may have any.
+    fn canonical(bits: u32) -> u32 {
         if f32::from_bits(bits).is_nan() { f32::NAN.to_bits() } else { bits }
     }
 
@@ -149,9 +149,9 @@ mod tests {
         each(&Mixed, columns.columns, &mut plain);
         for (i, row) in rows.iter().enumerate() {
             assert_eq!(columns.get(i).map(|x| x.map(f32::to_bits)), row.map(|x| x.map(f32::to_bits)));
-            let alone = told(Mixed.apply(*row));
-            assert_eq!(told(together[i]), alone, "row {i}, {row:?}");
-            assert_eq!(told(plain.as_flattened()[i]), alone, "row {i}, {row:?}, by the plain loop");
+            let alone = canonical(Mixed.apply(*row));
+            assert_eq!(canonical(together[i]), alone, "row {i}, {row:?}");
+            assert_eq!(canonical(plain.as_flattened()[i]), alone, "row {i}, {row:?}, by the plain loop");
         }
     }
 }

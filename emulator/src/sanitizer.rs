@@ -1,11 +1,11 @@
-//! The sanitizer: a shadow of every word of memory, which shows races, accesses out of bounds and
-//! unwritten reads.
+//! The sanitizer: a shadow of every word of memory. It finds races, accesses out of bounds and
+//! reads of unwritten memory.
 //!
 //! Two accesses to a word, one of them a plain write, are a race unless they are ordered. Other
 //! blocks of the same launch, or other lanes of the same block in the same phase, are not ordered.
 //! Atomic accesses, relaxed stores and relaxed loads may meet each other. One of them and a plain
 //! access are a race if one of the two writes. The order by flags and fences is not checked:
-//! answers that differ from order to order show a fault there.
+//! answers that differ between orders show a fault there.
 //!
 //! Blocks run in sequence, each to its end, in the sanitizer's order; or interleaved (see `turns`).
 
@@ -20,11 +20,11 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// Content of unwritten memory.
 pub const POISON: u8 = 0xcb;
 
-/// So many polls of device memory without a change by any block are an endless wait. Lanes that
-/// poll while others work do so some thousands of times.
+/// This number of polls of device memory without a change by any block is an endless wait. Lanes
+/// that poll while others work do so some thousands of times.
 const LOOKS: u32 = 1 << 20;
 
-/// How a lane touches memory.
+/// Kind of an access to memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {
     /// A plain read.
@@ -33,7 +33,7 @@ pub enum Access {
     Write,
     /// An atomic read and write that changes memory.
     Atomic,
-    /// An atomic read and write that may leave memory as it is.
+    /// An atomic read and write that may leave memory unchanged.
     Swap,
     /// An atomic read.
     Look,
@@ -48,14 +48,14 @@ pub enum Access {
 pub struct Place {
     /// The block.
     pub block: u32,
-    /// Phases that the block has behind it.
+    /// Number of phases that the block has finished.
     pub phase: u32,
     /// The lane in its block.
     pub lane: u32,
 }
 
 impl Place {
-    /// Whether nothing orders this access and one by `other` of the same launch.
+    /// Whether this access and one by `other` in the same launch are unordered.
     pub(crate) fn meets(self, other: Place) -> bool {
         self.block != other.block || (self.phase == other.phase && self.lane != other.lane)
     }
@@ -74,7 +74,7 @@ pub enum Fault {
     Outside(Place),
     /// A read of unwritten memory.
     Unwritten(Place),
-    /// Two accesses that nothing orders.
+    /// Two unordered accesses.
     Race(Place, Place),
     /// An endless wait.
     Waits(Place),
@@ -84,9 +84,9 @@ impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Fault::Outside(at) => write!(f, "an access outside its memory at {at}"),
-            Fault::Unwritten(at) => write!(f, "a read of what nothing wrote at {at}"),
+            Fault::Unwritten(at) => write!(f, "a read of unwritten memory at {at}"),
             Fault::Race(one, other) => write!(f, "a race between {one} and {other}"),
-            Fault::Waits(at) => write!(f, "a wait for what nobody does at {at}"),
+            Fault::Waits(at) => write!(f, "an endless wait at {at}"),
         }
     }
 }
@@ -104,13 +104,13 @@ struct Seen {
     launches: u64,
     name: &'static str,
     fault: Option<Fault>,
-    /// Looks since device memory last changed.
+    /// Polls since device memory last changed.
     looks: u32,
     device: BTreeMap<u64, Vec<Shadow>>,
 }
 
 impl Sanitizer {
-    /// A sanitizer that runs blocks and lanes in that order; with a seed, blocks start in that
+    /// A sanitizer that runs blocks and lanes in that order. With a seed, blocks start in that
     /// order and interleave.
     pub fn new(order: Order, interleave: Option<u64>) -> Self {
         Sanitizer { order, interleave, seen: Mutex::default() }
@@ -138,7 +138,7 @@ impl Sanitizer {
         seen.looks = 0;
         seen.name = name;
     }
-    /// The launch is over.
+    /// Ends a launch; returns its first fault as an error.
     pub(crate) fn verdict(&self) -> Result<(), Error> {
         let mut seen = self.seen();
         match seen.fault.take() {
@@ -146,25 +146,25 @@ impl Sanitizer {
             Some(fault) => Err(Error::Rule { kernel: seen.name, fault }),
         }
     }
-    /// Memory that kernels may reach from now on.
+    /// Adds memory that kernels may access from now on.
     pub(crate) fn adopt(&self, addr: u64, bytes: usize) {
         self.seen().device.insert(addr, vec![Shadow::default(); bytes / 4]);
     }
-    /// Memory that is gone.
+    /// Removes memory that no longer exists.
     pub fn invalidate(&self, addr: u64) {
         self.seen().device.remove(&addr);
     }
-    /// The host wrote the first `bytes` bytes of the memory at `addr`.
+    /// Marks the first `bytes` bytes of the memory at `addr` as written by the host.
     pub fn host_wrote(&self, addr: u64, bytes: usize) {
         if let Some(shadows) = self.seen().device.get_mut(&addr) {
             shadows[..bytes.div_ceil(4)].iter_mut().for_each(Shadow::host_wrote);
         }
     }
-    /// A rule was broken; the first of a launch is kept.
+    /// Records a fault; the first of a launch is kept.
     pub(crate) fn note(&self, fault: Fault) {
         self.seen().fault.get_or_insert(fault);
     }
-    /// Device memory has changed, though the access might only have looked.
+    /// Device memory has changed, though the access might only have read.
     pub(crate) fn changed(&self) {
         self.seen().looks = 0;
     }

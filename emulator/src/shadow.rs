@@ -1,4 +1,4 @@
-//! The shadow of a word of four bytes: its last accesses that may be unordered with the next one.
+//! The shadow of a word of four bytes: its last accesses, which may be unordered with the next one.
 
 use crate::sanitizer::{Access, Fault, Place};
 
@@ -26,7 +26,7 @@ impl Pair {
 pub struct Shadow {
     written: bool,
     launch: u64,
-    /// A second, unordered one is a race at once.
+    /// A second, unordered write is a race at once.
     write: Option<Place>,
     read: Pair,
     /// Relaxed stores, and atomics that write.
@@ -36,11 +36,11 @@ pub struct Shadow {
 }
 
 impl Shadow {
-    /// The host wrote it.
+    /// Marks the word as written by the host.
     pub fn host_wrote(&mut self) {
         self.written = true;
     }
-    /// An access by a kernel, and the rule that it broke.
+    /// Adds an access by a kernel; returns the rule that it broke.
     pub fn see(&mut self, access: Access, launch: u64, place: Place) -> Option<Fault> {
         use Access::*;
         if self.launch != launch {

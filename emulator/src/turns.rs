@@ -4,9 +4,9 @@
 //! 256 times. At one pace a block would hardly ever be far behind or ahead of the others. Such
 //! distances find faults.
 //!
-//! At most [`SLOTS`] blocks run at once, as on a GPU: the next one starts when one ends. So a
-//! launch is determined by that number alone. Blocks that all wait for one that has not started
-//! wait for ever.
+//! At most [`SLOTS`] blocks run at once, as on a GPU: the next one starts when one ends. So that
+//! number alone determines a launch. Blocks that all wait for one that has not started wait for
+//! ever.
 
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
@@ -15,14 +15,14 @@ use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
-/// How many blocks run at once.
+/// Number of blocks that run at once.
 pub const SLOTS: usize = 64;
-/// One in so many atomics, relaxed stores and loads passes the turn on.
+/// One in this number of atomics, relaxed stores and loads passes the turn on.
 const PASSES: u32 = 4;
-/// One in so many passes changes how quick a block is.
+/// One in this number of passes changes a block's speed.
 const CHANGES: u32 = 64;
 
-/// Ends a block in the middle: the fault has been noted, and the panic is not reported.
+/// The panic that ends a block early: the fault has been recorded, and the panic is not reported.
 pub struct Stop;
 
 impl Stop {
@@ -32,13 +32,13 @@ impl Stop {
     }
 }
 
-/// Runs a block. Whether it came to its end; it did not if it was stopped or panicked.
+/// Runs a block. The error is its panic, also if it was stopped.
 pub fn to_its_end(block: impl FnOnce()) -> Result<(), Box<dyn Any + Send>> {
     // A stopped kernel leaves device memory half changed; the launch has failed.
     catch_unwind(AssertUnwindSafe(block))
 }
 
-/// Passes on the panic of a kernel; that it was stopped is no panic.
+/// Passes on the panic of a kernel, except that of a stop.
 pub fn pass_on(panic: Box<dyn Any + Send>) {
     if !panic.is::<Stop>() {
         resume_unwind(panic);
@@ -48,7 +48,7 @@ pub fn pass_on(panic: Box<dyn Any + Send>) {
 /// The schedule of turns.
 pub struct TurnScheduler {
     state: Mutex<State>,
-    /// A bell for each slot: it is your turn.
+    /// A condition variable for each slot, signalled at its turn.
     bells: Vec<Condvar>,
 }
 
@@ -56,20 +56,20 @@ struct State {
     random: SmallRng,
     /// The block that has the turn.
     holder: usize,
-    /// How quick the block of each slot is; 0 if there is none.
+    /// Speed of the block of each slot; 0 if there is none.
     pace: Vec<u32>,
     /// Blocks that have not started.
     waiting: VecDeque<u32>,
-    /// Why the launch stops in the middle.
+    /// The panic that stops the launch early.
     panic: Option<Box<dyn Any + Send>>,
 }
 
 impl State {
-    /// A pace for a block.
+    /// A random speed for a block.
     fn draw_pace(&mut self) -> u32 {
         4u32.pow(self.random.random_range(0..=4))
     }
-    /// The next to move; `None` if no block is left.
+    /// The next block to move; `None` if no block is left.
     fn draw(&mut self) -> Option<usize> {
         let all: u32 = self.pace.iter().sum();
         if all == 0 {
@@ -87,7 +87,7 @@ impl State {
 }
 
 impl TurnScheduler {
-    /// Runs those blocks, which start in that order; `run` is given the block, the scheduler and
+    /// Runs blocks, which start in the order of `blocks`. `run` gets the block, the scheduler and
     /// the block's slot.
     pub fn run(blocks: Vec<u32>, seed: u64, run: impl Fn(u32, &TurnScheduler, usize) + Sync) {
         let slots = blocks.len().min(SLOTS);
@@ -102,7 +102,7 @@ impl TurnScheduler {
             panic: None,
         };
         state.pace = (0..slots).map(|_| state.draw_pace()).collect();
-        state.holder = state.draw().expect("somebody is seated");
+        state.holder = state.draw().expect("a block is seated");
         let scheduler =
             TurnScheduler { state: Mutex::new(state), bells: (0..slots).map(|_| Condvar::new()).collect() };
         std::thread::scope(|scope| {
@@ -115,7 +115,7 @@ impl TurnScheduler {
         state.panic.into_iter().for_each(pass_on);
     }
 
-    /// A slot's life: block after block.
+    /// Runs block after block in a slot.
     fn occupy(&self, slot: usize, run: &impl Fn(u32, &TurnScheduler, usize)) {
         drop(self.wait(slot, self.state()));
         loop {
@@ -139,7 +139,7 @@ impl TurnScheduler {
         let state = self.state();
         self.pass_from(slot, state);
     }
-    /// Passes it, or not.
+    /// Passes the turn, or keeps it.
     pub fn may_pass(&self, slot: usize) {
         let mut state = self.state();
         if state.random.random_ratio(1, PASSES) {

@@ -1,19 +1,19 @@
-//! Room for answers in the host's memory.
+//! Limit of the size of answers in host memory.
 
 use super::Device;
 use std::sync::atomic::Ordering;
 
 impl Device {
-    /// The same machine, whose answers have at most `bytes` of rows in the host's memory; of its
-    /// clones too. A larger answer is
-    /// [refused](crate::Error::AnswerTooLarge) as soon as it is counted. Without this the host's
-    /// free memory is the limit.
+    /// The same machine, with at most `bytes` of rows in host memory for each answer. Its clones
+    /// have this limit too.
+    /// A larger answer is [refused](crate::Error::AnswerTooLarge) as soon as it is counted. Without
+    /// this call the host's free memory is the limit.
     pub fn limited_answers(self, bytes: u64) -> Device {
         self.usage.answers.store(bytes, Ordering::Relaxed);
         self
     }
 
-    /// Most bytes of the rows of one answer.
+    /// Maximum bytes of the rows of one answer.
     pub(crate) fn answers(&self) -> u64 {
         self.usage.answers.load(Ordering::Relaxed)
     }

@@ -1,4 +1,4 @@
-//! Memory of a device, by elements.
+//! Typed buffers in a device's memory.
 
 #[cfg(feature = "cuda")]
 use super::cuda;
@@ -29,38 +29,39 @@ pub struct Buffer<T> {
     pub(super) usage: Arc<Usage>,
     pub(super) ledger: Arc<Ledger>,
     pub(super) purpose: &'static str,
-    // None is held as such: whether `T` may be sent does not matter.
+    // The buffer holds no `T` itself: whether `T` may be sent does not matter.
     pub(super) element: PhantomData<fn() -> T>,
 }
 
 impl<T: Pod> Buffer<T> {
-    /// How many elements.
+    /// Number of elements.
     pub fn len(&self) -> usize {
         self.len
     }
-    /// Whether there are none.
+    /// Whether the buffer has no elements.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
-    /// What a kernel is given.
+    /// The span that a kernel takes as its argument.
     pub fn span(&self) -> Span<T> {
         let addr = match &self.memory {
             Memory::Host(m) => m.addr(),
             #[cfg(feature = "cuda")]
             Memory::Gpu(m) => m.addr(),
         };
-        // SAFETY: so many elements of zeroed memory of this device, aligned for any of them; that they live as long as a kernel
-        // uses them, who launches it promises.
+        // SAFETY: the buffer has this number of elements in zeroed memory of this device, aligned
+        // for any of them. The caller of a launch promises that they live as long as the kernel
+        // uses them.
         unsafe { Span::new(addr, self.len as u64) }
     }
 
-    /// Sets the first elements, behind all that was started before.
+    /// Sets the first elements, after all work started before.
     ///
     /// # Errors
     /// [`Error::Device`] when the transfer fails.
     ///
     /// # Panics
-    /// When there are more items than elements: a fault of the caller.
+    /// If there are more items than elements: a fault of the caller.
     pub fn write(&mut self, items: &[T]) -> Result<(), Error> {
         assert!(items.len() <= self.len, "more items than the buffer has elements");
         self.usage.allows("memory was written by the host")?;
@@ -83,7 +84,7 @@ impl<T: Pod> Buffer<T> {
         }
     }
 
-    /// Sets every byte to zero, behind all that was started before.
+    /// Sets every byte to zero, after all work started before.
     ///
     /// # Errors
     /// [`Error::Device`] with the driver's text.
@@ -91,7 +92,7 @@ impl<T: Pod> Buffer<T> {
         self.fill(0)
     }
 
-    /// Sets every byte, behind all that was started before.
+    /// Sets every byte, after all work started before.
     ///
     /// # Errors
     /// [`Error::Device`] with the driver's text.
@@ -117,13 +118,13 @@ impl<T: Pod> Buffer<T> {
         }
     }
 
-    /// The first `len` elements; waits for all that was started before.
+    /// Copies the first `len` elements to the host; waits for all work started before.
     ///
     /// # Errors
     /// [`Error::Device`] with the driver's text, also of a kernel that failed before.
     ///
     /// # Panics
-    /// When the buffer has fewer elements: a fault of the caller.
+    /// If the buffer has fewer elements: a fault of the caller.
     pub fn read(&self, len: usize) -> Result<Vec<T>, Error> {
         assert!(len <= self.len, "more items than the buffer has elements");
         self.usage.waits("memory was read by the host")?;
@@ -146,7 +147,7 @@ impl<T: Pod> Buffer<T> {
 }
 
 impl<T> Buffer<T> {
-    /// Whether so many bytes were read ahead, so that reading them moves nothing.
+    /// Whether this number of bytes was read ahead, so that a read transfers nothing.
     #[cfg_attr(not(feature = "cuda"), allow(unused_variables, reason = "the host reaches all memory"))]
     pub(super) fn is_known(&self, bytes: usize) -> bool {
         match (&self.memory, &*self.machine) {

@@ -1,4 +1,4 @@
-//! Ending the work of a device early.
+//! Interruption of a device's work.
 
 #[cfg(feature = "cuda")]
 use super::held;
@@ -7,8 +7,8 @@ use crate::error::Error;
 use nearmiss_emulator::{Interrupt, Looks};
 
 impl Device {
-    /// The same machine; `interrupt` ends the work of every detector that is made with it, and its
-    /// making.
+    /// The same machine; `interrupt` ends the work of every detector that is made with it,
+    /// including its construction.
     pub fn with_interrupt(self, interrupt: &Interrupt) -> Device {
         Device { interrupt: Some(interrupt.clone()), ..self }
     }
@@ -18,26 +18,26 @@ impl Device {
         self.interrupt.as_ref()
     }
 
-    /// The same machine, for work that nothing ends early: what would be left half done could not
+    /// The same machine, for work that nothing ends early: if left half done, its result could not
     /// be used again.
     pub(crate) fn undisturbed(&self) -> Device {
         Device { interrupt: None, ..self.clone() }
     }
 
-    /// Looks of the host at the handle, for one piece of its own work.
+    /// Polls of the handle by the host, for one piece of its own work.
     pub(crate) fn looks(&self) -> Looks<'_> {
         Looks::new(self.interrupt())
     }
 
-    /// Whether work goes on.
+    /// Checks that work may continue.
     ///
     /// # Errors
-    /// [`Error::Interrupted`] when the handle was triggered.
+    /// [`Error::Interrupted`] if the handle was triggered.
     pub(crate) fn goes_on(&self) -> Result<(), Error> {
         if self.looks().ends() { Err(Error::Interrupted) } else { Ok(()) }
     }
 
-    /// The same, before a launch. A GPU's launches that are recorded are recorded whole.
+    /// Checks that a launch may start. A GPU's recorded launches are recorded whole.
     pub(super) fn may_launch(&self) -> Result<(), Error> {
         match &*self.machine {
             Machine::Emulator(_) => self.goes_on(),

@@ -1,4 +1,4 @@
-//! Points in the stream of work, and what a device counts.
+//! Events in the stream of work, and a device's counts.
 
 #[cfg(feature = "cuda")]
 use super::cuda;
@@ -16,7 +16,7 @@ impl fmt::Debug for Device {
 }
 
 impl Device {
-    /// A point in the stream of work, to measure from or to.
+    /// An event in the stream of work, to measure from or to.
     ///
     /// # Errors
     /// [`Error::Device`] with the driver's text.
@@ -29,17 +29,18 @@ impl Device {
         }
     }
 
-    /// How often work was what it was the last time and, on a GPU, launched as one graph, so far.
+    /// Number of replays so far: frames with the same work as the frame before. A GPU launches it
+    /// as one graph.
     pub fn replays(&self) -> u64 {
         self.usage.replays.load(Ordering::Relaxed)
     }
 
-    /// How many kernels were launched so far.
+    /// Number of kernel launches so far.
     pub fn launches(&self) -> u64 {
         self.usage.launches.load(Ordering::Relaxed)
     }
 
-    /// How often memory was taken so far.
+    /// Number of allocations so far.
     pub fn allocations(&self) -> u64 {
         self.usage.allocations.load(Ordering::Relaxed)
     }
@@ -49,18 +50,18 @@ impl Device {
         self.usage.uploaded.load(Ordering::Relaxed)
     }
 
-    /// How often the host waited for the device so far.
+    /// Number of times that the host waited for the device so far.
     pub fn waits(&self) -> u64 {
         self.usage.waits.load(Ordering::Relaxed)
     }
 
-    /// As long as the answer lives, taking memory, reading, writing and marks in time are refused to this thread: what is done only
-    /// launches and clears, so that a stream which is being captured takes it.
+    /// Restricts this thread to launches and clears as long as the result lives: a stream that is
+    /// being captured accepts those. Allocations, reads, writes and events are refused.
     pub(crate) fn launches_only(&self) -> LaunchesOnly {
         LaunchesOnly::new(&self.usage, None)
     }
 
-    /// Somebody else may have changed the device's memory: a graph that was launched again.
+    /// Marks the device's memory as changed by another party: a graph that was launched again.
     pub(crate) fn changed(&self) {
         #[cfg(feature = "cuda")]
         if let Machine::Cuda(c) = &*self.machine {
@@ -68,13 +69,13 @@ impl Device {
         }
     }
 
-    /// Bytes of device memory held now, and the most held at once.
+    /// Bytes of device memory held now, and the maximum held at once.
     pub fn bytes(&self) -> (u64, u64) {
         (self.usage.bytes.load(Ordering::Relaxed), self.usage.peak.load(Ordering::Relaxed))
     }
 }
 
-/// A point in the stream of work.
+/// An event in the stream of work.
 pub enum Event {
     /// On the CPU.
     Host(Instant),
@@ -84,7 +85,7 @@ pub enum Event {
 }
 
 impl Event {
-    /// Moves the mark behind all work so far.
+    /// Moves the event after all work so far.
     pub(super) fn again(&mut self, device: &Device) -> Result<(), Error> {
         match (self, &*device.machine) {
             (Event::Host(at), _) => *at = Instant::now(),
@@ -96,7 +97,7 @@ impl Event {
         Ok(())
     }
 
-    /// On the GPU.
+    /// The event of a GPU.
     #[cfg(feature = "cuda")]
     pub(super) fn gpu(&self) -> Option<&cuda::Event> {
         match self {
@@ -105,7 +106,7 @@ impl Event {
         }
     }
 
-    /// Milliseconds from this mark to a later one; waits for it.
+    /// Milliseconds from this event to a later one; waits for that one.
     ///
     /// # Errors
     /// [`Error::Device`] with the driver's text.

@@ -1,4 +1,4 @@
-//! Where kernels run: an NVIDIA GPU, or the CPU.
+//! Machines that run kernels: an NVIDIA GPU, or the CPU.
 
 mod answers;
 mod buffer;
@@ -40,13 +40,13 @@ use std::sync::atomic::Ordering;
 use usage::Usage;
 
 named! {
-    /// Which machine to take.
+    /// Machine to use.
     pub enum Backend {
         /// The CPU, on all its cores.
         Cpu = "cpu",
         /// The NVIDIA GPU.
         Cuda = "cuda",
-        /// The GPU where there is one, else the CPU.
+        /// The GPU if there is one, else the CPU.
         Auto = "auto",
     }
 }
@@ -58,16 +58,16 @@ impl Default for Backend {
     }
 }
 
-/// A machine that runs kernels, and its memory. Any thread may use it, one at a time; clones are the same machine. For work
-/// side by side open one for each.
+/// A machine that runs kernels, and its memory. Any thread may use it, one at a time; clones are
+/// the same machine. For concurrent work open one each.
 #[derive(Clone)]
 pub struct Device {
     machine: Arc<Machine>,
     usage: Arc<Usage>,
     ledger: Arc<Ledger>,
-    /// What the memory is for that is taken next.
+    /// Purpose of the next allocation.
     purpose: &'static str,
-    /// What ends its work early.
+    /// The handle that ends its work early.
     interrupt: Option<Interrupt>,
 }
 
@@ -84,28 +84,26 @@ impl Machine {
 }
 
 impl Device {
-    /// The machine that `backend` names: the first GPU, or so many threads of the CPU, or all: no more
-    /// than there are processors, as more only wait for each other. With [`Backend::Auto`] the threads
-    /// are those of the CPU that is taken if there is no GPU.
+    /// The first GPU, or `threads` threads of the CPU, by default and at most one a processor: more
+    /// only wait for each other. [`Backend::Auto`] uses `threads` if there is no GPU.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for threads of [`Backend::Cuda`]; [`Error::Device`] if there is no such machine or
-    /// its driver refuses, with the driver's text; [`Error::KernelMismatch`] if the GPU's kernels are of other sources.
+    /// [`Error::InvalidArgument`] for threads of a GPU; [`Error::Device`], with the driver's text,
+    /// if there is none or it refuses; [`Error::KernelMismatch`] for kernels of other sources.
     pub fn open(backend: Backend, threads: Option<usize>) -> Result<Device, Error> {
         if let (Backend::Cuda, Some(threads)) = (backend, threads) {
-            let what = format!("{} of a GPU, which takes none", counted(threads as u64, "thread", "threads"));
             return Err(Error::InvalidArgument {
-                what,
+                what: format!("threads cannot be set for a GPU, got {threads}"),
                 advice: "leave the threads out, or choose the CPU".into(),
             });
         }
         let processors = std::thread::available_parallelism().map_or(usize::MAX, usize::from);
-        let threads = threads.map(|asked| asked.min(processors));
+        let threads = threads.map(|count| count.min(processors));
         match backend {
             Backend::Cpu => Ok(Self::emulator(Emulator::new(Mode::Engine, threads)?)),
             Backend::Cuda => Self::gpu(0),
             Backend::Auto if cfg!(feature = "cuda") => match Self::gpu(0) {
-                // No GPU is what `auto` is for; a GPU that refuses our kernels is a fault to hear of.
+                // `auto` covers a missing GPU; a GPU that refuses our kernels is reported.
                 Err(Error::Device { .. }) => Self::open(Backend::Cpu, threads),
                 other => other,
             },
@@ -113,11 +111,11 @@ impl Device {
         }
     }
 
-    /// The GPU with that number, as the driver counts them. It shares the GPU's primary context with all of the program
-    /// that does, and leaves threads bound to the context that they were bound to.
+    /// The GPU with that number, in the driver's order. It uses the GPU's primary context, which is
+    /// shared in the program. Threads stay bound to the context that they were bound to.
     ///
     /// # Errors
-    /// As for [`Device::open`]; where there is no such GPU the text says how many there are.
+    /// As for [`Device::open`]; if there is no such GPU, the text has the number of GPUs.
     #[cfg_attr(not(feature = "cuda"), allow(unused_variables, reason = "there is none"))]
     pub fn gpu(ordinal: u32) -> Result<Device, Error> {
         #[cfg(feature = "cuda")]
@@ -130,15 +128,17 @@ impl Device {
         })
     }
 
-    /// A GPU by a context and a stream of the caller: all work goes to that stream, behind what is there, and no other context is
-    /// made. A null context is the one that the thread is bound to; a null stream is the default one, which cannot be captured.
+    /// A GPU by a context and a stream of the caller. All work goes to that stream, after its
+    /// earlier work; no other context is made. A null context is the one that the thread is bound
+    /// to. A null stream is the default one, which cannot be captured.
     ///
     /// # Errors
     /// As for [`Device::gpu`].
     ///
     /// # Safety
-    /// Both are handles of CUDA's driver (`CUcontext`, `CUstream`; of its runtime a `cudaStream_t` and a null context), the
-    /// stream is of that context, and both outlive the device, its clones and all that was made of them.
+    /// Both are handles of CUDA's driver (`CUcontext`, `CUstream`), or a runtime `cudaStream_t` and
+    /// a null context. The stream is of that context. Both outlive the device, its clones and all
+    /// objects made with them.
     #[cfg_attr(not(feature = "cuda"), allow(unused_variables, reason = "there is none"))]
     pub unsafe fn from_stream(context: *mut c_void, stream: *mut c_void) -> Result<Device, Error> {
         #[cfg(feature = "cuda")]
@@ -155,7 +155,7 @@ impl Device {
         Self::with(Machine::Emulator(emulator))
     }
 
-    /// The same machine with no more than `bytes` of memory, whatever it has; of its clones too.
+    /// The same machine with at most `bytes` of memory. Its clones have this limit too.
     pub fn with_memory_limit(self, bytes: u64) -> Device {
         self.usage.most.store(bytes, Ordering::Relaxed);
         self
@@ -166,28 +166,28 @@ impl Device {
         Device { machine: Arc::new(machine), usage, ledger, purpose: "of no purpose", interrupt: None }
     }
 
-    /// The same machine, for one user of it: what that takes, launches and moves is counted by itself too.
+    /// The same machine for one user, with counts of its own too.
     pub(crate) fn for_one(&self) -> Device {
         let interrupt = self.interrupt.clone().unwrap_or_default();
         Device { ledger: Arc::new(Ledger::default()), interrupt: Some(interrupt), ..self.clone() }
     }
 
-    /// The same machine: memory that is taken from it is for that.
+    /// The same machine; its allocations are counted under that purpose.
     pub(crate) fn of(&self, purpose: &'static str) -> Device {
         Device { purpose, ..self.clone() }
     }
 
-    /// What this user launched and moved since this was last asked.
+    /// Launches and transfers of this user since the last call.
     pub(crate) fn work(&self) -> Work {
         self.ledger.work()
     }
 
-    /// What this user holds, by purpose.
+    /// Memory that this user holds, by purpose.
     pub(crate) fn held(&self) -> std::collections::BTreeMap<&'static str, Count> {
         self.ledger.held()
     }
 
-    /// What the machine calls itself.
+    /// The machine's name.
     pub fn name(&self) -> String {
         match &*self.machine {
             Machine::Emulator(e) if e.sanitizer().is_some() => "CPU, under the sanitizer".into(),
@@ -202,7 +202,7 @@ impl Device {
         if self.is_gpu() { "cuda" } else { "cpu" }
     }
 
-    /// Whether both are clones of one, which one thread uses at a time.
+    /// Whether both are clones of one device, which one thread uses at a time.
     pub(crate) fn is(&self, other: &Device) -> bool {
         Arc::ptr_eq(&self.machine, &other.machine)
     }
@@ -212,7 +212,7 @@ impl Device {
         self.machine.is_gpu()
     }
 
-    /// The GPU's number, as the driver counts them; none of a CPU.
+    /// The GPU's number in the driver's order; `None` for a CPU.
     pub fn ordinal(&self) -> Option<u32> {
         match &*self.machine {
             Machine::Emulator(_) => None,
@@ -221,7 +221,7 @@ impl Device {
         }
     }
 
-    /// The handle of the stream that all of the GPU's work goes to (`CUstream`; 0 is the default one); none of a CPU.
+    /// The handle of the stream of all work (`CUstream`; 0 is the default one); `None` for a CPU.
     pub fn stream(&self) -> Option<u64> {
         match &*self.machine {
             Machine::Emulator(_) => None,
@@ -239,14 +239,14 @@ impl Device {
         }
     }
 
-    /// Blocks for `items` items, a lane each.
+    /// Blocks for `items` items, one lane each.
     pub fn blocks_for<E: Entry>(&self, items: usize) -> u32 {
         // Item counts are below 2^32, so block counts are too.
         items.div_ceil(self.lanes::<E>() as usize) as u32
     }
 
-    /// Blocks for up to `room` items whose number only the device knows: enough to fill the machine, and the kernel
-    /// strides over the rest.
+    /// Blocks for up to `room` items whose number only the device knows. They fill the machine, and
+    /// the kernel strides over the remaining items.
     pub fn blocks_striding<E: Entry>(&self, room: usize) -> u32 {
         let full = match &*self.machine {
             Machine::Emulator(e) => 64 * e.threads() as u32,
@@ -256,11 +256,11 @@ impl Device {
         self.blocks_for::<E>(room).clamp(1, full)
     }
 
-    /// Blocks for up to `room` items whose number only the device knows, no more than run at once: for kernels whose
-    /// lanes draw items until there are no more.
+    /// Blocks for up to `room` items whose number only the device knows, at most those that run at
+    /// once. For kernels whose lanes draw items until none is left.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Errors of the device.
     pub fn blocks_at_once<E: Entry>(&self, room: usize) -> Result<u32, Error> {
         let full = match &*self.machine {
             Machine::Emulator(_) => self.blocks_striding::<E>(room),
@@ -270,10 +270,10 @@ impl Device {
         Ok(self.blocks_for::<E>(room).clamp(1, full.max(1)))
     }
 
-    /// Memory for `len` elements: zeroed (poisoned under the sanitizer).
+    /// Allocates `len` elements: zeroed (poisoned under the sanitizer).
     ///
     /// # Errors
-    /// [`Error::OutOfMemory`] when the machine has no more, or may use no more: see [`Device::with_memory_limit`].
+    /// [`Error::OutOfMemory`] beyond the machine's memory or [`Device::with_memory_limit`].
     pub fn buffer<T: Pod>(&self, len: usize) -> Result<Buffer<T>, Error> {
         self.usage.allows("memory was taken")?;
         self.usage.allocations.fetch_add(1, Ordering::Relaxed);
@@ -308,25 +308,25 @@ impl Device {
         })
     }
 
-    /// Memory that holds `items`.
+    /// Allocates a buffer that holds `items`.
     ///
     /// # Errors
-    /// As for [`Device::buffer`], and [`Error::Device`] when the transfer fails.
+    /// As for [`Device::buffer`], and [`Error::Device`] if the transfer fails.
     pub fn upload<T: Pod>(&self, items: &[T]) -> Result<Buffer<T>, Error> {
         let mut buffer = self.buffer(items.len())?;
         buffer.write(items)?;
         Ok(buffer)
     }
 
-    /// Starts a kernel behind all that was started before.
+    /// Starts a kernel after all work started before.
     ///
     /// # Errors
-    /// [`Error::Device`] with the driver's text; [`Error::Interrupted`]; [`Error::Bug`] under the sanitizer, and while there is
-    /// a [`View`].
+    /// [`Error::Device`] with the driver's text; [`Error::Interrupted`]; [`Error::Bug`] under the
+    /// sanitizer, and while there is a [`View`].
     ///
     /// # Safety
-    /// The spans of `args` are of buffers of this device that live until the kernel is over (dropping a buffer waits) and that no
-    /// other thread touches meanwhile, and what the kernel's card asks under "Before" holds.
+    /// The spans of `args` are of buffers of this device that live until the kernel ends (dropping
+    /// one waits). No other thread accesses them meanwhile. "Before" of the kernel's card holds.
     pub unsafe fn launch<E: Entry>(&self, blocks: u32, args: &E::Args) -> Result<(), Error> {
         if blocks == 0 {
             return Ok(());
@@ -344,7 +344,7 @@ impl Device {
         let is_listed = held::list(&self.usage, |list| list.launch::<E>(blocks, args));
         match &*self.machine {
             Machine::Emulator(e) => {
-                // SAFETY: the caller's promise. What is listed is done all the same: nothing is gained by doing it later.
+                // SAFETY: the caller's promise. A CPU executes listed work at once.
                 unsafe { e.launch::<E>(blocks, args, self.interrupt()) }.map_err(Error::from)
             }
             #[cfg(feature = "cuda")]

@@ -1,12 +1,13 @@
-//! The kernels' PTX, cut by kernel: the driver compiles a kernel when it is first used, not all of them at the start.
+//! The kernels' PTX, split by kernel: the driver compiles a kernel at its first use, not all of
+//! them at the start.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Read;
 
-/// The text of a PTX that is compressed by zstd.
+/// Decompresses a PTX text that is packed by zstd.
 ///
 /// # Errors
-/// Why it is none.
+/// The reason why it is not one.
 #[cfg(any(feature = "cuda", test))]
 pub fn decompressed(mut compressed: &[u8]) -> Result<String, String> {
     let mut text = String::new();
@@ -16,11 +17,11 @@ pub fn decompressed(mut compressed: &[u8]) -> Result<String, String> {
     Ok(text)
 }
 
-/// PTX by its parts: what all kernels need, functions, kernels.
+/// PTX in parts: the common head, functions, kernels.
 pub struct Parts {
     shared: String,
     declarations: BTreeMap<String, String>,
-    /// In the text's order: a function is declared or defined before it is called.
+    /// In the text's order: a function is declared or defined before its first call.
     functions: Vec<(String, String)>,
     entries: BTreeMap<String, String>,
 }
@@ -38,7 +39,8 @@ fn opens(line: &str) -> Option<(bool, &str)> {
 }
 
 impl Parts {
-    /// Cuts a text as rustc writes it: a function ends with a brace, a declaration with a semicolon, at a line's start.
+    /// Splits a text of rustc: at a line's start, a function ends with a brace, a declaration with
+    /// a semicolon.
     pub fn new(ptx: &str) -> Parts {
         let mut parts = Parts {
             shared: String::new(),
@@ -72,18 +74,18 @@ impl Parts {
         parts
     }
 
-    /// The names of the kernels.
+    /// Names of the kernels.
     #[cfg(test)]
     fn kernels(&self) -> impl Iterator<Item = &str> {
         self.entries.keys().map(String::as_str)
     }
 
-    /// A module of what all kernels share, without a kernel.
+    /// A module of the parts that all kernels share, without a kernel.
     pub fn common(&self) -> &str {
         &self.shared
     }
 
-    /// A module of one kernel and all that it calls; `None` if there is no such kernel.
+    /// A module of one kernel and all functions that it calls; `None` if there is no such kernel.
     pub fn module(&self, kernel: &str) -> Option<String> {
         let entry = self.entries.get(kernel)?;
         let mut needed = BTreeSet::new();
@@ -96,7 +98,7 @@ impl Parts {
             }
         }
         let mut module = self.shared.clone();
-        // What is only declared (a function that the driver brings) is declared for all.
+        // A function that is only declared (the driver provides it) is declared in every module.
         for (name, text) in &self.declarations {
             if needed.contains(name.as_str()) || self.functions.iter().all(|(defined, _)| defined != name) {
                 module += text;
@@ -132,7 +134,7 @@ mod tests {
         assert!(!parts.common().contains(".entry") && !parts.common().contains(".func"));
     }
 
-    /// A function of a module that is called before it is declared or defined: no assembler takes that.
+    /// A function that a module calls before it is declared or defined, which no assembler accepts.
     fn called_too_early<'a>(parts: &'a Parts, module: &str) -> Option<&'a str> {
         let opened = |name: &str| module.lines().position(|line| opens(line).is_some_and(|(_, n)| n == name));
         let named = |name: &str| module.lines().position(|line| line.contains(name));

@@ -1,5 +1,6 @@
-//! Work that is the same frame after frame. What a frame launches is listed first; where the list is that of the last time, a GPU is
-//! given all of it at once, as a graph. Nobody has to say that something changed: another list is another frame.
+//! Replay of work that is the same frame after frame.
+//! A frame's launches are listed first. If the list equals the last one, a GPU launches it as one
+//! graph. Changes need no report: another list is another frame.
 
 #[cfg(feature = "cuda")]
 use super::cuda;
@@ -9,41 +10,41 @@ use crate::error::Error;
 use nearmiss_kernels::entry::Entry;
 use std::sync::atomic::Ordering;
 
-/// Something that a device does in its turn.
+/// One step of a device's work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Act {
-    /// A kernel starts.
+    /// A kernel launch.
     Launch {
-        /// Its name.
+        /// Name of the kernel.
         kernel: &'static str,
-        /// Blocks, lanes of each, bytes of shared memory of each.
+        /// Blocks, lanes per block, bytes of shared memory per block.
         grid: (u32, u32, u32),
-        /// Where its arguments begin, in words of the listing.
+        /// Start of its arguments, in words of the listing.
         args: usize,
     },
-    /// Memory is set.
+    /// A fill of memory.
     Fill {
-        /// Where.
+        /// Address.
         addr: u64,
-        /// How many bytes.
+        /// Number of bytes.
         bytes: usize,
-        /// To what.
+        /// Value of each byte.
         byte: u8,
     },
-    /// A mark is passed.
+    /// The event of that number.
     Mark(usize),
 }
 
-/// What a device is to do, in order.
+/// The steps of a device, in order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Listing {
     acts: Vec<Act>,
-    /// Arguments of all launches, each at a word's beginning.
+    /// Arguments of all launches, each aligned to a word.
     args: Vec<u64>,
 }
 
 impl Listing {
-    /// All of it, with the arguments of launches.
+    /// All steps, with the arguments of launches.
     #[cfg_attr(not(feature = "cuda"), allow(dead_code, reason = "a CPU does it at once"))]
     pub fn acts(&self) -> impl Iterator<Item = (Act, &[u64])> {
         self.acts.iter().map(|&act| match act {
@@ -52,7 +53,7 @@ impl Listing {
         })
     }
 
-    /// A launch behind what is there.
+    /// Appends a launch.
     pub fn launch<E: Entry>(&mut self, blocks: u32, args: &E::Args) {
         const { assert!(align_of::<E::Args>() <= align_of::<u64>()) };
         let at = self.args.len();
@@ -63,7 +64,7 @@ impl Listing {
         self.acts.push(Act::Launch { kernel: E::NAME, grid, args: at });
     }
 
-    /// Anything else behind what is there.
+    /// Appends any other step.
     pub fn push(&mut self, act: Act) {
         self.acts.push(act);
     }
@@ -74,14 +75,14 @@ impl Listing {
     }
 }
 
-/// Points in the work, to measure from and to.
+/// Events in the work, to measure from and to.
 pub struct Marks<'a> {
     device: &'a Device,
     events: &'a mut [Event],
 }
 
 impl Marks<'_> {
-    /// The work comes by the mark of that number.
+    /// Passes the event of that number.
     ///
     /// # Errors
     /// [`Error::Device`] with the driver's text.
@@ -93,20 +94,20 @@ impl Marks<'_> {
     }
 }
 
-/// What was done the last time, and how it is done at once.
+/// The last frame's work, and its graph.
 #[derive(Default)]
 pub struct Replay {
     events: Vec<Event>,
     last: Listing,
-    /// The memory of a listing.
+    /// An unused listing, kept for its memory.
     spare: Listing,
-    /// Of `last`, once it was the same twice.
+    /// The graph of `last`, once the same work came twice.
     #[cfg(feature = "cuda")]
     graph: Option<cuda::Graph>,
 }
 
 impl Replay {
-    /// Nothing yet, with so many marks.
+    /// A replay without work, with this number of events.
     ///
     /// # Errors
     /// [`Error::Device`] with the driver's text.
@@ -115,7 +116,7 @@ impl Replay {
         Ok(Replay { events, ..Replay::default() })
     }
 
-    /// Milliseconds between two marks that were passed; waits for the later one.
+    /// Milliseconds between two events that were passed; waits for the later one.
     ///
     /// # Errors
     /// [`Error::Device`] with the driver's text.
@@ -123,10 +124,10 @@ impl Replay {
         self.events[from].to(&self.events[to])
     }
 
-    /// Does work as it comes.
+    /// Executes work without a list.
     ///
     /// # Errors
-    /// Those of the work.
+    /// Errors of the work.
     pub fn straight(
         &mut self,
         device: &Device,
@@ -135,13 +136,15 @@ impl Replay {
         work(&mut Marks { device, events: &mut self.events })
     }
 
-    /// Does work that only launches, clears and passes marks; what it did the last time too, at once.
+    /// Executes work that only launches, clears and passes events. Work that equals the last is
+    /// replayed as one graph.
     ///
     /// # Errors
-    /// Those of the work and of the device.
+    /// Errors of the work and of the device.
     ///
     /// # Safety
-    /// The work gives no memory back: it is begun when this returns, not when it is told. The device is always the same.
+    /// The work frees no memory: it starts when this function returns, not when it is listed. The
+    /// device is always the same.
     pub unsafe fn run(
         &mut self,
         device: &Device,
@@ -162,25 +165,27 @@ impl Replay {
         Ok(())
     }
 
-    /// Does what is listed, as a graph where it was the same the last time.
+    /// Executes a list, as a graph if it equals the last one.
     fn perform(&mut self, device: &Device, list: &Listing) -> Result<(), Error> {
         let is_same = *list == self.last;
         if is_same {
             device.usage.replays.fetch_add(1, Ordering::Relaxed);
         }
         match &*device.machine {
-            // It was done as it was listed.
+            // A CPU executed it while it was listed.
             Machine::Emulator(_) => Ok(()),
             #[cfg(feature = "cuda")]
             Machine::Cuda(c) => {
                 self.graph = self.graph.take().filter(|_| is_same);
                 let marks: Vec<&cuda::Event> = self.events.iter().filter_map(Event::gpu).collect();
                 if !is_same {
-                    // SAFETY: the spans of what was just listed are of buffers that live: the promise of who launched, and of `run`.
+                    // SAFETY: the spans of this list are of live buffers: the promise of each
+                    // launch, and of `run`.
                     return unsafe { c.perform(list, &marks) };
                 }
                 if self.graph.is_none() {
-                    // SAFETY: as above; it is launched where the same was just listed, and the marks are its neighbours here.
+                    // SAFETY: as above. The graph is launched only after the same list, and `self`
+                    // keeps its marks.
                     self.graph = Some(unsafe { c.record(list, &marks) }?);
                 }
                 self.graph.as_ref().map_or(Ok(()), |graph| c.replay(graph))
@@ -190,7 +195,8 @@ impl Replay {
 }
 
 impl Device {
-    /// Whether work may be listed: not for the default stream, nor for one that its owner captures, which wants the work itself.
+    /// Whether work may be listed. It may not be on the default stream, nor on one that its owner
+    /// captures, which needs the work itself.
     fn can_list(&self) -> Result<bool, Error> {
         match &*self.machine {
             Machine::Emulator(_) => Ok(true),

@@ -1,35 +1,35 @@
-//! What a device counts, whichever thread asks it.
+//! Counts of a device, over all its threads.
 
 use super::held::is_held;
 use crate::error::Error;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// What a device has been asked for. Each number stands for itself, so none orders the others.
+/// Counts of a device. Each number is independent, so no order between them is needed.
 pub struct Usage {
     /// Launches so far.
     pub launches: AtomicU64,
     /// Bytes held now.
     pub bytes: AtomicU64,
-    /// The most held at once.
+    /// Maximum held at once.
     pub peak: AtomicU64,
-    /// Buffers taken so far.
+    /// Allocations so far.
     pub allocations: AtomicU64,
-    /// How often the host asked for what the device had done, and so waited for it.
+    /// Times that the host read the device's results, and so waited for it.
     pub waits: AtomicU64,
-    /// How often work was what it was the last time, and done at once.
+    /// Frames whose work equalled the last one's and was replayed.
     pub replays: AtomicU64,
     /// Bytes copied from the host so far.
     pub uploaded: AtomicU64,
     /// Views of memory that the host holds now.
     pub views: AtomicU64,
-    /// Most bytes that may be held; as many as there can be for what the machine has.
+    /// Maximum bytes that may be held; `u64::MAX` if the machine's memory is the limit.
     pub most: AtomicU64,
-    /// Most bytes that the rows of one answer may have on the host.
+    /// Maximum bytes of the rows of one answer on the host.
     pub answers: AtomicU64,
 }
 
 impl Usage {
-    /// Nothing yet.
+    /// All counts at zero, no limits.
     pub fn new() -> Usage {
         let [launches, bytes, peak, allocations, waits, replays, uploaded, views] =
             [const { AtomicU64::new(0) }; 8];
@@ -37,10 +37,10 @@ impl Usage {
         Usage { launches, bytes, peak, allocations, waits, replays, uploaded, views, most, answers }
     }
 
-    /// Whether more than launches is allowed now, to this thread.
+    /// Checks that this thread may do more than launch now.
     ///
     /// # Errors
-    /// [`Error::Bug`], saying `what` was done, where it is not.
+    /// [`Error::Bug`] with `what`, which was done, if it may not.
     pub fn allows(&self, what: &str) -> Result<(), Error> {
         if is_held(self) {
             return Err(Error::Bug { what: format!("{what} in a frame that only launches") });
@@ -48,13 +48,13 @@ impl Usage {
         Ok(())
     }
 
-    /// The same of what makes the host wait, which is counted.
+    /// Counts a wait of the host, and checks that this thread may wait.
     pub fn waits(&self, what: &str) -> Result<(), Error> {
         self.waits.fetch_add(1, Ordering::Relaxed);
         self.allows(what)
     }
 
-    /// So many bytes more are held; or, where they are too many, how many may be.
+    /// Adds to the bytes held; if that exceeds the limit, returns the bytes that are left.
     pub fn take(&self, bytes: u64) -> Result<(), u64> {
         let most = self.most.load(Ordering::Relaxed);
         let more = |held: u64| held.checked_add(bytes).filter(|held| *held <= most);
@@ -62,7 +62,7 @@ impl Usage {
         before.map(drop).map_err(|held| most.saturating_sub(held))
     }
 
-    /// So many bytes are held no longer.
+    /// Subtracts from the bytes held.
     pub fn give(&self, bytes: u64) {
         self.bytes.fetch_sub(bytes, Ordering::Relaxed);
     }

@@ -1,4 +1,4 @@
-//! What a device holds, looked at by the host: without a copy where the machine allows it.
+//! Reads of a device's memory by the host, without a copy if the machine allows it.
 
 use super::buffer::{Buffer, Memory};
 use super::usage::Usage;
@@ -8,7 +8,8 @@ use bytemuck::Pod;
 use std::ops::Deref;
 use std::sync::atomic::Ordering;
 
-/// Elements that the host looks at. As long as there is one, no kernel may be launched: [`Device::launch`] refuses.
+/// Elements that the host reads in place. While there is a view, [`Device::launch`] refuses every
+/// kernel.
 pub struct View<'a, T> {
     elements: Elements<'a, T>,
     usage: &'a Usage,
@@ -55,16 +56,17 @@ impl<T: Pod> Buffer<T> {
         Ahead { memory: &self.memory, bytes: len.min(self.len) * size_of::<T>(), purpose: self.purpose }
     }
 
-    /// The first `len` elements, to look at; waits for all that was started before, unless they were read ahead.
+    /// A view of the first `len` elements; waits for all work started before, unless they were read
+    /// ahead.
     ///
     /// # Errors
     /// As for [`Buffer::read`].
     ///
     /// # Panics
-    /// When the buffer has fewer elements: a fault of the caller.
+    /// If the buffer has fewer elements: a fault of the caller.
     pub fn view(&self, len: usize) -> Result<View<'_, T>, Error> {
         assert!(len <= self.len, "more items than the buffer has elements");
-        self.usage.waits("memory was looked at by the host")?;
+        self.usage.waits("memory was read in place by the host")?;
         let bytes = len * size_of::<T>();
         let elements = match (&self.memory, &*self.machine) {
             (Memory::Host(m), _) => {
@@ -85,8 +87,9 @@ impl<T: Pod> Buffer<T> {
 }
 
 impl Device {
-    /// Brings the first elements of several buffers to the host with one wait, so that what is read of them before the next
-    /// launch or write needs no other. Nothing on a machine whose memory the host reaches.
+    /// Copies the first elements of several buffers to the host with one wait. Reads of them before
+    /// the next launch or write wait no more. Does nothing if the host reaches the machine's
+    /// memory.
     ///
     /// # Errors
     /// [`Error::Device`] with the driver's text, also of a kernel that failed before.
@@ -98,7 +101,7 @@ impl Device {
             #[cfg(feature = "cuda")]
             Machine::Cuda(c) => {
                 all.iter().for_each(|ahead| self.ledger.read(ahead.purpose, ahead.bytes as u64));
-                // What is of another machine is refused when it is asked for.
+                // Memory of another machine is refused at its read.
                 let card = all.iter().filter_map(|ahead| match ahead.memory {
                     Memory::Gpu(memory) => Some((memory, ahead.bytes)),
                     Memory::Host(_) => None,

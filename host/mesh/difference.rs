@@ -1,8 +1,8 @@
-//! Meshes that are no frames of one.
+//! Differences that keep meshes from being frames of one body.
 
 use super::{Mesh, Problem};
 
-/// The first difference that keeps two meshes from being frames of one.
+/// The first difference that keeps two meshes from being frames of one body.
 pub(crate) fn difference(t0: &Mesh, t1: &Mesh) -> Option<Problem> {
     let first = || t0.name.clone();
     if t0.vertex_count() != t1.vertex_count() {

@@ -1,7 +1,8 @@
 //! Meshes: validated once, then trusted.
 //!
-//! A [`Mesh`] is one frame, a [`Body`] one mesh at one or two frames, a [`Topology`] the edges of its faces. What
-//! has passed [`Mesh::new`] needs no further check: finite where used, in range, indices valid.
+//! A [`Mesh`] is one frame, a [`Body`] one mesh at one or two frames, a [`Topology`] the edges of
+//! its faces. A mesh that passed [`Mesh::new`] needs no further check: its used positions are
+//! finite and in range, its indices valid.
 //! Files are read and written by the package `nearmiss-io`.
 
 mod difference;
@@ -30,11 +31,14 @@ use crate::Error;
 pub(crate) use validate::is_single;
 pub(crate) use weld::{Vertices, rename};
 
-/// One frame of a triangle mesh that has passed the validation.
+/// One validated frame of a triangle mesh.
 ///
-/// Every vertex that a face uses is finite and at most [`MAX_ABS_F64`] in size, and every index is in range. Single
-/// precision is kept up to [`MAX_ABS_F32`]; a mesh that goes beyond is kept in double precision, exactly. Degenerate and duplicate triangles, repeated indices and -0.0 are legal; a vertex that no face uses
-/// may be anything, even NaN.
+/// Every vertex that a face uses is finite and at most [`MAX_ABS_F64`] in size, and every index is
+/// in range.
+/// Single precision is kept up to [`MAX_ABS_F32`]. A mesh beyond that is kept in double precision,
+/// exactly.
+/// Degenerate and duplicate triangles, repeated indices and -0.0 are legal. A vertex that no face
+/// uses may have any value, even NaN.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
     pub(crate) name: String,
@@ -43,14 +47,14 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Checks and keeps a mesh given in memory; `name` stands in messages, as a file name would.
+    /// Validates a mesh in memory. Messages contain `name`, as they would a file name.
     ///
-    /// A mesh without triangles is legal here; see [`Mesh::require_triangles`]. Cost: one pass over the positions
-    /// and one over the faces.
+    /// A mesh without triangles is legal here; see [`Mesh::require_triangles`]. Cost: one pass over
+    /// the positions and one over the faces.
     ///
     /// # Errors
-    /// [`Error::Input`] with [`Problem::NonFinite`], [`Problem::TooLarge`], [`Problem::IndexOutOfRange`] or
-    /// [`Problem::TooMany`], naming the first offender.
+    /// [`Error::Input`] with [`Problem::NonFinite`], [`Problem::TooLarge`],
+    /// [`Problem::IndexOutOfRange`] or [`Problem::TooMany`], for the first bad element.
     pub fn new(name: impl Into<String>, positions: Positions, faces: Vec<[u32; 3]>) -> Result<Mesh, Error> {
         let name = name.into();
         match validate::check(positions, &faces) {
@@ -64,12 +68,12 @@ impl Mesh {
         &self.name
     }
 
-    /// One point a vertex.
+    /// One point per vertex.
     pub fn positions(&self) -> &Positions {
         &self.positions
     }
 
-    /// Three vertex indices a triangle.
+    /// Three vertex indices per triangle.
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.faces
     }
@@ -89,7 +93,7 @@ impl Mesh {
         (self.name, self.positions, self.faces)
     }
 
-    /// Refuses a mesh without triangles. Readers ask this; a caller that builds meshes may.
+    /// Refuses a mesh without triangles. Readers call this; a caller that builds meshes may.
     ///
     /// # Errors
     /// [`Problem::NoTriangles`].

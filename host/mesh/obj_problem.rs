@@ -1,6 +1,6 @@
-//! What can be wrong with an OBJ file.
+//! Problems of OBJ files.
 
-/// What is wrong with an OBJ file. Lines count from 1; a continued line has the number of its first part.
+/// Problem of an OBJ file. Lines count from 1; a continued line has the number of its first part.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[allow(missing_docs, reason = "the message of each variant says what it and its fields are")]
@@ -51,6 +51,6 @@ pub enum ObjProblem {
          backslash"
     )]
     Joined { line: usize, found: String },
-    #[error("line {line} has a NUL byte; the file is no text, or not UTF-8: save it as UTF-8")]
+    #[error("line {line} has a NUL byte; the file is not UTF-8 text: save it as UTF-8")]
     Nul { line: usize },
 }

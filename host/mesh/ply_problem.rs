@@ -1,6 +1,6 @@
-//! What can be wrong with a PLY file.
+//! Problems of PLY files.
 
-/// What is wrong with a PLY file. Header lines count from 1; entries, faces and corners from 0.
+/// Problem of a PLY file. Header lines count from 1; entries, faces and corners from 0.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 #[allow(missing_docs, reason = "the message of each variant says what it and its fields are")]
@@ -54,7 +54,7 @@ pub enum PlyProblem {
     #[error("its element face has both vertex_indices and vertex_index: remove one")]
     TwoCorners,
     #[error(
-        "its header promises {count} entries of element {element}, at least {need} bytes, but {left} bytes are left: \
+        "its header declares {count} entries of element {element}, at least {need} bytes, but {left} bytes are left: \
          the header is wrong or the file is cut short"
     )]
     Promise { element: String, count: u64, need: u128, left: usize },

@@ -1,10 +1,10 @@
-//! Positions that somebody else owns.
+//! Borrowed positions.
 
 use super::Positions;
 use crate::error::Error;
 use bytemuck::NoUninit;
 
-/// Borrowed positions, one point a vertex: nothing is copied to make them.
+/// Positions owned by the caller, one point per vertex; making them copies nothing.
 ///
 /// ```
 /// use nearmiss::mesh::Points;
@@ -23,25 +23,26 @@ pub enum Points<'a> {
 }
 
 impl<'a> Points<'a> {
-    /// Points of numbers one behind the other: x, y, z, x, y, z, …
+    /// Points of consecutive numbers: x, y, z, x, y, z, …
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for a number of numbers that is no multiple of three.
+    /// [`Error::InvalidArgument`] if the number of numbers is not a multiple of three.
     pub fn flat<T: Coordinate>(numbers: &'a [T]) -> Result<Points<'a>, Error> {
         let (points, rest) = numbers.as_chunks();
         if rest.is_empty() {
             return Ok(T::points(points));
         }
         Err(Error::InvalidArgument {
-            what: format!("{} numbers, which are no whole points", numbers.len()),
-            advice: "give three numbers a point".into(),
+            what: format!("positions must have three numbers a point, got {} numbers", numbers.len()),
+            advice: "pass x, y and z of each point".into(),
         })
     }
 
-    /// Points of another library, as glam's `Vec3` and `DVec3`: types of three numbers and nothing else, which bytemuck knows.
+    /// Points of another library's type, such as glam's `Vec3` and `DVec3`: three numbers without
+    /// padding, and known to bytemuck.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for a type of another size, or with another alignment.
+    /// [`Error::InvalidArgument`] for a type of another size or alignment.
     pub fn of<T: Coordinate, P: NoUninit>(points: &'a [P]) -> Result<Points<'a>, Error> {
         if size_of::<P>() != 3 * size_of::<T>() {
             return Err(no_points::<P>());
@@ -62,7 +63,8 @@ impl<'a> Points<'a> {
         self.len() == 0
     }
 
-    /// Puts the points into positions of the caller, in doubles or as they are; memory is taken only if there is too little.
+    /// Copies the points into positions of the caller, in doubles or as they are. Allocates only if
+    /// the memory there is too small.
     pub(crate) fn copy_to(self, to: &mut Positions, as_f64: bool) {
         match (self, &mut *to) {
             (Points::F32(from), Positions::F32(points)) if !as_f64 => from.clone_into(points),
@@ -74,7 +76,7 @@ impl<'a> Points<'a> {
     }
 }
 
-/// A number of a position: `f32` or `f64`.
+/// A coordinate of a position: `f32` or `f64`.
 pub trait Coordinate: bytemuck::Pod + sealed::Sealed {
     /// Points of such numbers.
     #[doc(hidden)]
@@ -136,8 +138,8 @@ impl<'a> From<&'a Positions> for Points<'a> {
 
 fn no_points<P>() -> Error {
     Error::InvalidArgument {
-        what: format!("points of type {}, which is not three numbers alone", std::any::type_name::<P>()),
-        advice: "give a type of three f32 or three f64 without padding".into(),
+        what: format!("a point must be three f32 or f64 without padding, got {}", std::any::type_name::<P>()),
+        advice: "pass [f32; 3], [f64; 3] or a type of the same layout".into(),
     }
 }
 

@@ -1,6 +1,7 @@
-//! Vertex positions in the precision in which they were given.
+//! Vertex positions in the precision of the input.
 
-/// Positions of a mesh, one point a vertex, in the unit of the input. Doubles are never rounded to floats.
+/// Positions of a mesh, one point per vertex, in the unit of the input. Doubles are never rounded
+/// to floats.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Positions {
     /// Single precision.
@@ -58,7 +59,7 @@ impl Positions {
         }
     }
 
-    /// The same points in double precision, without a copy where they already are.
+    /// The same points in double precision, without a copy if they already are.
     pub(crate) fn promoted(self) -> Positions {
         match self {
             Positions::F32(_) => Positions::F64(self.to_f64()),

@@ -1,40 +1,41 @@
-//! What can be wrong with an input, each message with its element, its value and what to do.
+//! Problems of inputs. Each message names the element and its value, and how to correct it.
 
 use super::{ObjProblem, PlyProblem};
 
-/// What is wrong with a mesh, a pair of frames or a scene name. The file is named by [`crate::Error::Input`].
+/// Problem of a mesh, a pair of frames or a scene name. [`crate::Error::Input`] names the file.
 ///
 /// Vertices, faces and corners count from 0; lines of a file from 1.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Problem {
-    /// The file could not be read; the text is the operating system's.
+    /// A file that cannot be read; the text is the operating system's.
     #[error("cannot be read: {reason}; check the path, its kind and its permissions")]
     Unreadable {
-        /// The operating system's words.
+        /// Text of the operating system.
         reason: String,
     },
-    /// The file was packed by gzip and is damaged.
+    /// A file that was packed by gzip and is damaged.
     #[error("its gz data cannot be unpacked: {reason}; copy the file again, or pack it again")]
     Packed {
-        /// The unpacker's words.
+        /// Text of the unpacker.
         reason: String,
     },
-    /// The file is text in another encoding than UTF-8.
+    /// A text file in another encoding than UTF-8.
     #[error("is text in {found}, and only UTF-8 is read: save it as UTF-8")]
     Encoding {
         /// The encoding, by the file's first bytes.
         found: &'static str,
     },
-    /// The extension names no reader.
+    /// An extension without a reader.
     #[error("has the extension {found:?}, which no reader knows; give a .ply or an .obj file")]
     UnknownExtension {
         /// The extension without its dot; empty if there is none.
         found: String,
     },
-    /// A vertex that a face uses is NaN or infinite.
+    /// NaN or infinity at a vertex that a face uses.
     #[error(
-        "vertex {vertex} has {axis} = {value}; a vertex that a face uses must be finite: mend it, or remove its faces"
+        "vertex {vertex} has {axis} = {value}; a vertex that a face uses must be finite: \
+         correct it, or remove its faces"
     )]
     NonFinite {
         /// Index of the vertex.
@@ -44,7 +45,7 @@ pub enum Problem {
         /// NaN or an infinity.
         value: f64,
     },
-    /// A vertex that a face uses is larger than arithmetic in double precision allows.
+    /// A coordinate of a used vertex beyond the range of double precision arithmetic.
     #[error(
         "vertex {vertex} has {axis} = {}; coordinates may be at most {limit} in size: scale the mesh down",
         short(*value)
@@ -59,25 +60,26 @@ pub enum Problem {
         /// The limit, in words.
         limit: &'static str,
     },
-    /// A pose of a rigid body that is no motion.
+    /// A pose of a rigid body that is not a rigid motion.
     #[error(
         "has the pose {rotation:?} + {translation:?}; give a unit quaternion (x, y, z, w) and a finite translation"
     )]
     NoPose {
-        /// The quaternion as given.
+        /// The quaternion, as passed.
         rotation: [f64; 4],
-        /// The translation as given.
+        /// The translation, as passed.
         translation: [f64; 3],
     },
-    /// A pose that takes a body out of the range of coordinates.
+    /// A pose that moves a body out of the range of coordinates.
     #[error(
-        "has a pose that takes it to coordinates of {size:e}; they may be at most 2^480 in size: move it nearer"
+        "has a pose that moves it to coordinates of {size:e}; they may be at most 2^480 in size: \
+         move it closer to the origin"
     )]
     PoseTooFar {
         /// The largest coordinate, rounded up.
         size: f64,
     },
-    /// A face names a vertex that does not exist.
+    /// An index of a vertex that does not exist, in a face.
     #[error(
         "face {face} corner {corner} names vertex {index}, but there are {vertices} vertices, counted from 0: \
          correct the index or remove the face"
@@ -87,9 +89,9 @@ pub enum Problem {
         face: usize,
         /// Corner in the face.
         corner: usize,
-        /// The index as given.
+        /// The index, as in the input.
         index: i64,
-        /// How many vertices there are.
+        /// Number of vertices.
         vertices: usize,
     },
     /// More vertices or triangles than index arithmetic allows.
@@ -97,12 +99,12 @@ pub enum Problem {
     TooMany {
         /// `vertices` or `triangles`.
         what: &'static str,
-        /// How many.
+        /// Number found.
         count: u64,
-        /// How many are allowed.
+        /// Maximum number.
         limit: u64,
     },
-    /// No triangles where some are needed.
+    /// No triangles, though the operation needs some.
     #[error("has no triangles, and some are needed: give a mesh with at least one face")]
     NoTriangles,
     /// Two frames of one body with different numbers of vertices.
@@ -139,14 +141,15 @@ pub enum Problem {
     FrameFace {
         /// Name of the first frame.
         first: String,
-        /// The first face that differs, of the file if both are of files.
+        /// The first face that differs; a face of the file if both meshes come from files.
         face: usize,
         /// Its corners at t0.
         t0: Vec<u32>,
         /// Its corners at t1.
         t1: Vec<u32>,
     },
-    /// A polygon two of whose edges cross, seen along the axis on which its normal is longest.
+    /// A polygon with two crossing edges, projected along the axis of its normal's largest
+    /// component.
     #[error(
         "face {face}, with {corners} corners, crosses itself: its edges between the vertices {} and {}, and {} and \
          {}; put its corners in order around it, or split it",
@@ -155,21 +158,21 @@ pub enum Problem {
     FaceCrosses {
         /// Index of the face in the file.
         face: usize,
-        /// How many corners it has.
+        /// Number of corners.
         corners: usize,
-        /// The ends of both edges.
+        /// Both ends of both edges.
         edges: [[u32; 2]; 2],
     },
-    /// A polygon with too many corners, of which the fan is wrong.
+    /// A polygon with too many corners whose fan is wrong.
     #[error(
-        "face {face} has {corners} corners and must be cut by ears, which is done for at most {limit}: split it"
+        "face {face} has {corners} corners and needs ear cutting, which handles at most {limit}: split it"
     )]
     FaceCorners {
         /// Index of the face in the file.
         face: usize,
-        /// How many corners it has.
+        /// Number of corners.
         corners: usize,
-        /// How many are allowed.
+        /// Maximum number of corners.
         limit: usize,
     },
     /// A polygon that no triangles cover once, though none of its edges cross.
@@ -180,17 +183,17 @@ pub enum Problem {
     FaceFolds {
         /// Index of the face in the file.
         face: usize,
-        /// How many corners it has.
+        /// Number of corners.
         corners: usize,
     },
-    /// An index that is past the end.
-    #[error("has no {what} {index}: it has {count} of them, counted from 0; give a smaller one")]
+    /// An index beyond the end.
+    #[error("has no {what} {index}: it has {count} of them, counted from 0; give a smaller index")]
     NoSuch {
         /// `vertex`, `face`, `edge` or `query`.
         what: &'static str,
-        /// What was asked for.
+        /// The index, as passed.
         index: u64,
-        /// How many there are.
+        /// Number of items.
         count: u64,
     },
     /// A row of a file of queries that cannot be used.
@@ -198,12 +201,12 @@ pub enum Problem {
     QueryRow {
         /// The line, counted from 1.
         line: usize,
-        /// What is wrong.
+        /// The bad token.
         token: String,
-        /// Why.
+        /// The reason.
         why: &'static str,
     },
-    /// A file of a scene that cannot be used.
+    /// A scene file that cannot be used.
     #[error("{what}; {advice}")]
     Scene {
         /// The body, the key and the value.
@@ -211,8 +214,8 @@ pub enum Problem {
         /// What to do.
         advice: String,
     },
-    /// No such generated scene.
-    #[error("is no scene; known are: {known}")]
+    /// An unknown name of a generated scene.
+    #[error("is not a scene; known are: {known}")]
     UnknownScene {
         /// The names, with commas.
         known: String,
@@ -238,13 +241,13 @@ impl From<ObjProblem> for Problem {
     }
 }
 
-/// The shortest text that reads back as the value: as a float where it is one.
+/// The shortest text that reads back as the value; a float's if the value is a float.
 fn short(value: f64) -> String {
     let float = value as f32;
     if f64::from(float) == value { format!("{float:e}") } else { format!("{value:e}") }
 }
 
-/// Corners as a message shows them: no more than a line's worth.
+/// The first corners, up to a line's worth, as a message shows them.
 fn listed(corners: &[u32]) -> String {
     const MOST: usize = 12;
     match corners.get(..MOST) {

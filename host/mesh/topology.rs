@@ -1,42 +1,45 @@
-//! Edges, and which face owns which vertex and edge.
+//! Edges of a mesh, and the face that owns each vertex and edge.
 
 use nearmiss_emulator::Looks;
 
-/// The edge id of a corner pair with equal ends, which is no edge.
+/// Edge id of two equal corners, which form no edge.
 pub const NO_EDGE: u32 = u32::MAX;
 
-/// The edges of a mesh, and for each vertex and edge the one face that owns it.
+/// The edges of a mesh, and the one face that owns each vertex and edge.
 ///
-/// Ownership lets a pass over pairs of faces see each pair of vertices and faces, or of edges, exactly once: a face
-/// answers only for what it owns. The owner is the face of smallest index that has the vertex or edge, at its first
+/// By ownership a pass over pairs of faces tests each feature pair exactly once: a face tests only
+/// its own features. The owner is the face of smallest index with that vertex or edge, at its first
 /// corner that has it. A vertex that no face uses has no owner.
 ///
-/// Edge `k` of a face joins its corners `k` and `k + 1` (mod 3). Where a face repeats an index, the pair with equal
-/// ends is no edge: it has the id [`NO_EDGE`] and is never owned; its point is tested as a vertex, and as an end of
-/// other edges.
+/// Edge `k` of a face joins its corners `k` and `k + 1` (mod 3). If a face repeats an index, the
+/// two equal corners form no edge: the id is [`NO_EDGE`], without an owner. Their point is still
+/// tested as a vertex, and as an end of other edges.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Topology {
-    /// `[larger vertex, smaller vertex]`, ascending by larger, then smaller; each edge once.
+    /// Rows `[larger vertex, smaller vertex]`, ascending by larger, then smaller vertex; each edge
+    /// once.
     pub edges: Vec<[u32; 2]>,
-    /// For each face the ids of its edges (0, 1), (1, 2), (2, 0), or [`NO_EDGE`].
+    /// Ids of each face's edges (0, 1), (1, 2), (2, 0), or [`NO_EDGE`].
     pub face_edges: Vec<[u32; 3]>,
-    /// For each face: bit `k` (0 to 2), it owns the vertex of corner `k`; bit `3 + k`, it owns its edge `k`.
+    /// Owner bits of each face: bit `k` (0 to 2) for the vertex of corner `k`; bit `3 + k` for its
+    /// edge `k`.
     pub owners: Vec<u32>,
 }
 
 impl Topology {
-    /// Finds edges and owners. Cost: O(faces + vertices) for meshes of bounded valence (a counting sort by the larger
-    /// vertex, then a sort of each vertex's few edges), 12 bytes a corner and 4 a vertex on the way.
+    /// Finds edges and owners. Cost: O(faces + vertices) for meshes of bounded valence, by a
+    /// counting sort by the larger vertex, then a sort of each vertex's few edges. Temporary
+    /// memory: 12 bytes per corner and 4 per vertex.
     ///
     /// # Panics
-    /// If a face names a vertex of `vertex_count` or above, or there are 2^30 faces or more, both of which
-    /// [`super::Mesh::new`] refuses.
+    /// If a face names a vertex of `vertex_count` or above, or there are 2^30 faces or more.
+    /// [`super::Mesh::new`] refuses both.
     pub fn new(faces: &[[u32; 3]], vertex_count: usize) -> Topology {
-        // Nothing ends it.
+        // Without a handle no poll ends the work.
         Topology::within(faces, vertex_count, &Looks::new(None)).unwrap_or_default()
     }
 
-    /// The same, of work that may be ended early: `None` if it was.
+    /// Finds edges and owners, for work that may end early: `None` if it did.
     pub(crate) fn within(faces: &[[u32; 3]], vertex_count: usize, looks: &Looks) -> Option<Topology> {
         assert!(faces.len() <= super::MAX_FACES, "faces come from a Mesh, which limits their number");
         let (starts, mut corners) = by_larger_vertex(faces, vertex_count, looks)?;
@@ -68,10 +71,10 @@ impl Topology {
     }
 }
 
-/// Faces or vertices from one look at an interrupt to the next: less than a millisecond.
+/// Faces or vertices between two polls of an interrupt: less than a millisecond.
 const PIECE: usize = 1 << 14;
 
-/// The pieces of some faces, with the number of the first face of each, until work is ended.
+/// Pieces of `faces`, each with the number of its first face, until the work ends early.
 fn pieces<'a>(
     faces: &'a [[u32; 3]],
     looks: &'a Looks,
@@ -80,8 +83,8 @@ fn pieces<'a>(
     pieces.map(|(at, piece)| (!looks.ends()).then_some((at * PIECE, piece)))
 }
 
-/// For each vertex a range (`starts[v]..starts[v + 1]`) of the edges whose larger end it is, packed as smaller end
-/// and corner, `3 face + k`.
+/// A range (`starts[v]..starts[v + 1]`) of edges for each vertex `v`: those with larger end `v`,
+/// packed as smaller end and corner, `3 face + k`.
 fn by_larger_vertex(faces: &[[u32; 3]], vertex_count: usize, looks: &Looks) -> Option<(Vec<u32>, Vec<u64>)> {
     let ends = |face: &[u32; 3], k: usize| {
         let (a, b) = (face[k], face[(k + 1) % 3]);
@@ -136,8 +139,8 @@ mod tests {
     use super::*;
     use nearmiss_emulator::Interrupt;
 
-    /// Every look ends it, no piece of faces or vertices is without one, and what was ended can be
-    /// made again.
+    /// Every poll can end the work, every piece of faces or vertices polls, and ended work can be
+    /// repeated.
     #[test]
     fn a_look_ends_it_within_a_piece() {
         let pieces = 5;

@@ -1,47 +1,49 @@
-//! The checker of [`Topology`]: the definition again, by maps and without the construction's tricks.
+//! The checker of [`Topology`]: its definition, implemented with maps and without the
+//! construction's tricks.
 
 use super::topology::{NO_EDGE, Topology};
 use std::collections::HashMap;
 
-/// What a [`Topology`] gets wrong; the first found.
+/// The first violation of a [`Topology`]'s definition.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Violation {
-    /// There are not as many `face_edges` and `owners` as faces.
+    /// The number of `face_edges` or `owners` is not that of the faces.
     #[error("{faces} faces, but {face_edges} face_edges and {owners} owners")]
     Lengths {
-        /// How many faces.
+        /// Number of faces.
         faces: usize,
-        /// How many triples of edge ids.
+        /// Number of triples of edge ids.
         face_edges: usize,
-        /// How many owner words.
+        /// Number of owner words.
         owners: usize,
     },
-    /// An edge does not name its larger vertex first.
+    /// An edge whose larger vertex is not first.
     #[error("edge {edge} does not name its larger vertex first")]
     SmallerFirst {
         /// Edge id.
         edge: usize,
     },
-    /// An edge is not above the one before it.
+    /// An edge that is not above the one before it.
     #[error("edge {edge} is not above the one before it")]
     Order {
         /// Edge id.
         edge: usize,
     },
-    /// A face's edge id is not that of the edge between its corners.
+    /// An edge id of a face that is not that of the edge between its corners.
     #[error("face {face} edge {k} has the id {found}, not {expected}")]
     FaceEdge {
         /// Face.
         face: usize,
         /// Edge of the face.
         k: usize,
-        /// The id that stands there.
+        /// The id found.
         found: u32,
-        /// The id of the edge between the corners, or [`NO_EDGE`] if it is missing from `edges` or is none.
+        /// The id of the edge between the corners, or [`NO_EDGE`] if `edges` lacks it or the
+        /// corners are equal.
         expected: u32,
     },
-    /// Corners of a face are joined by an edge that is not listed.
+    /// An unlisted edge between corners of a face.
     #[error("face {face} edge {k} is missing from the edges")]
     Missing {
         /// Face.
@@ -49,25 +51,26 @@ pub enum Violation {
         /// Edge of the face.
         k: usize,
     },
-    /// No face has this edge.
+    /// An edge that belongs to no face.
     #[error("edge {edge} belongs to no face")]
     Stray {
         /// Edge id.
         edge: usize,
     },
-    /// A face owns what it must not, or does not own what it must.
+    /// A face with wrong owner bits: one too many or one too few.
     #[error("face {face} has the owner bits {found:#b}, not {expected:#b}")]
     Owner {
         /// Face.
         face: usize,
-        /// The bits that stand there.
+        /// The bits found.
         found: u32,
         /// The bits by definition.
         expected: u32,
     },
 }
 
-/// Checks every statement of [`Topology`]'s definition against `faces`. Slow (hash maps); for tests and self-tests.
+/// Checks every statement of [`Topology`]'s definition against `faces`. Slow (hash maps); for tests
+/// and self-tests.
 ///
 /// # Errors
 /// The first [`Violation`].

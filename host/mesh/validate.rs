@@ -1,20 +1,23 @@
-//! The validation: what a mesh must satisfy before anything else sees it.
+//! The validation of a mesh, before any other code uses it.
 
 use super::{Points, Positions, Problem};
 use nearmiss_kernels::math::tolerance::SINGLE_MOST;
 
-/// Most vertices of one mesh: the ids of 2n - 1 tree nodes still fit an `i32`.
+/// Maximum number of vertices of a mesh: the ids of 2n - 1 tree nodes still fit an `i32`.
 pub const MAX_VERTICES: usize = 1 << 30;
-/// Most triangles of one mesh: three corners of each still fit a `u32`, and the ids of 2n - 1 tree nodes an `i32`.
+/// Maximum number of triangles of a mesh: three corners of each still fit a `u32`, and the ids of
+/// 2n - 1 tree nodes an `i32`.
 pub const MAX_FACES: usize = 1 << 30;
-/// Largest size of a coordinate that is kept in single precision, 2^60: dot products of differences stay finite,
+/// Maximum size of a coordinate in single precision, 2^60: dot products of differences stay finite,
 /// 3 (2^61)^2 < 2^124. A mesh with a larger one is kept in double precision.
 pub const MAX_ABS_F32: f32 = SINGLE_MOST as f32;
-/// Largest size of a double precision coordinate, 2^480: dot products of differences stay finite, 3 (2^481)^2 < 2^964.
+/// Maximum size of a coordinate in double precision, 2^480: dot products of differences stay
+/// finite, 3 (2^481)^2 < 2^964.
 pub const MAX_ABS_F64: f64 = f64::from_bits((1023 + 480) << 52);
 
-/// The positions as they are kept: as given, or in double precision where single precision cannot be computed with.
-/// Or the first violation: counts, then indices in face order, then coordinates in vertex order.
+/// The positions to keep: as passed, or in double precision if single precision is not sufficient.
+/// The error is the first violation: counts, then indices in face order, then coordinates in vertex
+/// order.
 pub(super) fn check(positions: Positions, faces: &[[u32; 3]]) -> Result<Positions, Problem> {
     count("vertices", positions.len(), MAX_VERTICES)?;
     count("triangles", faces.len(), MAX_FACES)?;
@@ -29,10 +32,10 @@ pub(super) fn check(positions: Positions, faces: &[[u32; 3]]) -> Result<Position
     Ok(if is_single((&positions).into(), faces)? { positions } else { positions.promoted() })
 }
 
-/// Whether positions can be computed with in single precision. Those given in it that cannot are doubles.
+/// Whether single precision is sufficient for the positions. If not, they are kept as doubles.
 ///
 /// # Errors
-/// The first coordinate, in vertex order, of a vertex that a face uses, that no precision can be computed with.
+/// The first coordinate, in vertex order, of a used vertex that exceeds every precision.
 pub(crate) fn is_single(positions: Points, faces: &[[u32; 3]]) -> Result<bool, Problem> {
     match positions {
         Points::F32(points) if coordinates(points, MAX_ABS_F32, "2^60", faces).is_ok() => Ok(true),
@@ -42,7 +45,7 @@ pub(crate) fn is_single(positions: Points, faces: &[[u32; 3]]) -> Result<bool, P
     }
 }
 
-/// Refuses `found` of `what` over `limit`.
+/// Refuses `found` of `what` if it exceeds `limit`.
 fn count(what: &'static str, found: usize, limit: usize) -> Result<(), Problem> {
     if found > limit {
         return Err(Problem::TooMany { what, count: found as u64, limit: limit as u64 });

@@ -1,21 +1,21 @@
-//! Vertices at one place made one, for meshes whose seams are vertices twice.
+//! Welding of vertices at one place, for meshes that have the vertices of a seam twice.
 
 use super::difference::difference;
 use super::{Mesh, Positions};
 use crate::Error;
 use std::cmp::Ordering;
 
-/// Which vertex stands for each.
+/// The representative of each vertex.
 pub(crate) struct Vertices {
-    /// For each vertex the first that a face uses at its place; itself if none does.
+    /// For each vertex, the first used vertex at its place; itself if no face uses it.
     names: Vec<u32>,
-    /// How many vertices that a face uses have another name.
+    /// Number of used vertices with another representative.
     pub merged: usize,
 }
 
 impl Vertices {
-    /// Those that are at one place in every frame, -0.0 and 0.0 being the same; among those that a face uses, which are
-    /// finite. Cost: a sort of the vertices, 8 bytes each.
+    /// Vertices are merged if they are at one place in every frame; -0.0 and 0.0 are the same. Only
+    /// used vertices are, which are finite. Cost: a sort of the vertices, 8 bytes each.
     pub fn of(frames: &[&Positions], faces: &[[u32; 3]]) -> Vertices {
         let count = frames.first().map_or(0, |frame| frame.len());
         let mut names: Vec<u32> = (0..count as u32).collect();
@@ -36,7 +36,7 @@ impl Vertices {
     }
 }
 
-/// The order of the places of two vertices; no order is asked of NaN.
+/// The order of two vertices' places. NaN does not occur here.
 fn place(frame: &Positions, a: usize, b: usize) -> Ordering {
     match frame {
         Positions::F32(points) => points[a].partial_cmp(&points[b]),
@@ -45,17 +45,19 @@ fn place(frame: &Positions, a: usize, b: usize) -> Ordering {
     .unwrap_or(Ordering::Equal)
 }
 
-/// Gives faces those names.
+/// Renames the vertices of faces.
 pub(crate) fn rename(vertices: &Vertices, faces: &mut [[u32; 3]]) {
     faces.iter_mut().flatten().for_each(|vertex| *vertex = vertices.names[*vertex as usize]);
 }
 
 impl Mesh {
-    /// The mesh with vertices at one place (equal coordinates, -0.0 and 0.0 being the same) merged into the first of
-    /// them that a face uses, and how many were merged. Faces that meet in a seam share vertices and edges then.
+    /// The mesh with vertices at one place merged (equal coordinates; -0.0 and 0.0 are the same),
+    /// and the number merged. The first that a face uses represents them. Faces that meet in a seam
+    /// share vertices and edges afterwards.
     ///
-    /// Vertices keep their indices, and triangles theirs: faces name other vertices, and the merged ones stay as
-    /// vertices that no face uses. A triangle that loses a corner stays, as a segment or a point. Cost: a sort.
+    /// Vertices and triangles keep their indices. Faces name the representatives, and no face uses
+    /// the merged vertices. A triangle that loses a corner stays, as a segment or a point. Cost: a
+    /// sort.
     ///
     /// For frames of one mesh use [`Mesh::weld_frames`] or [`Body::weld`](super::Body::weld).
     pub fn weld(&self) -> (Mesh, usize) {
@@ -65,11 +67,12 @@ impl Mesh {
         (welded, vertices.merged)
     }
 
-    /// Frames of one mesh with vertices merged that coincide in every frame, and how many were merged in each; as
-    /// [`Mesh::weld`]. All get the triangles of the first.
+    /// Frames of one mesh with vertices merged that coincide in every frame, and the number merged
+    /// in each; see [`Mesh::weld`]. All get the triangles of the first.
     ///
     /// # Errors
-    /// Those of [`Body::moving`](super::Body::moving), for the first frame that differs from the first of all.
+    /// Errors of [`Body::moving`](super::Body::moving), for the first frame that differs from the
+    /// first of all.
     pub fn weld_frames(frames: &[Mesh]) -> Result<(Vec<Mesh>, usize), Error> {
         let Some(first) = frames.first() else { return Ok((Vec::new(), 0)) };
         for frame in frames {
@@ -89,8 +92,8 @@ impl Mesh {
         Ok((welded.collect(), vertices.merged))
     }
 
-    /// How many vertices that a face uses share their place with an earlier one: what [`Mesh::weld`] would merge; 0 of a
-    /// mesh without seams. Cost: a sort of the vertices, 8 bytes each.
+    /// Number of used vertices at the place of an earlier one: those that [`Mesh::weld`] would
+    /// merge. It is 0 for a mesh without seams. Cost: a sort of the vertices, 8 bytes each.
     pub fn coincident(&self) -> usize {
         Vertices::of(&[&self.positions], &self.faces).merged
     }

@@ -1,10 +1,9 @@
 //! nearmiss-io: mesh files for [`nearmiss`]. PLY and OBJ are read, also packed by gzip; PLY is
 //! written.
 //!
-//! [`MeshFile`] is a file as it was read: a [`Mesh`](nearmiss::Mesh) of triangles, the faces of the
-//! file behind them ([`Polygons`]), and notes of everything that was not taken as it stands
-//! ([`Note`]). A caller with arrays needs none of this: [`Mesh::new`](nearmiss::Mesh::new) takes
-//! them.
+//! [`MeshFile`] is a file as it was read. It has a [`Mesh`](nearmiss::Mesh) of triangles, the faces
+//! of the file ([`Polygons`]), and notes of all parts that differ from the file ([`Note`]).
+//! Arrays need none of this: pass them to [`Mesh::new`](nearmiss::Mesh::new).
 //!
 //! ```
 //! use nearmiss::Body;

@@ -1,4 +1,4 @@
-//! Meshes of files: opening, the choice of the reader, and what a file has beside a mesh.
+//! Mesh files: opening, the choice of the reader, and the parts of a file that are not in its mesh.
 
 use crate::file::{self, encoding, is_packed};
 use crate::note::{Note, Notes, Treated};
@@ -13,13 +13,13 @@ use std::path::Path;
 pub enum Format {
     /// Stanford PLY: ascii, binary little-endian or big-endian.
     Ply,
-    /// Wavefront OBJ: `v` and `f`; other keywords of the format are skipped, and all else is
-    /// counted by [`MeshFile::notes`].
+    /// Wavefront OBJ: `v` and `f`. Other keywords of the format are skipped; [`MeshFile::notes`]
+    /// counts all else.
     Obj,
 }
 
 impl Format {
-    /// The format that the extension names, whatever its case: of `.ply.gz` that of `.ply`.
+    /// The format of an extension in any case; `.ply.gz` is PLY.
     ///
     /// # Errors
     /// [`Problem::UnknownExtension`].
@@ -35,7 +35,7 @@ impl Format {
     }
 }
 
-/// A mesh file as it was read: a mesh, the faces of the file behind its triangles, and notes.
+/// A mesh file as it was read: a mesh, the faces of the file, and notes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshFile {
     mesh: Mesh,
@@ -44,40 +44,43 @@ pub struct MeshFile {
 }
 
 impl MeshFile {
-    /// Reads a `.ply` or `.obj` file, also with `.gz` behind the name.
+    /// Reads a `.ply` or `.obj` file, also with `.gz` after the name.
     ///
     /// A polygon of n corners becomes n - 2 triangles, in file order; [`MeshFile::file_face`]
-    /// returns the face of a triangle. A polygon is cut as it is seen along the axis on which its
-    /// normal is longest, with exact signs: into the fan around its first corner if that covers it
-    /// once (every convex polygon), else by ears. A polygon without area, on a line or there and
-    /// back, keeps its fan, which has all its edges; so does one that is not flat (a corner off the
-    /// plane by a thousandth of its extent) and crosses itself as it is seen. Corners may touch; a
-    /// hole may be joined by an edge there and back.
+    /// returns the face of a triangle. It is projected along the axis of its normal's largest
+    /// component, and cut with exact signs. The cut is the fan around its first corner if that
+    /// covers it once (every convex polygon), else by ears.
+    /// A polygon without area, on a line or there and back, keeps its fan, which has all its edges.
+    /// So does one that is not flat (a corner off the plane by a thousandth of its extent) and
+    /// whose projection crosses itself. Corners may touch; a hole may be joined by an edge there
+    /// and back.
     ///
-    /// A flat polygon that crosses itself is cut as a fan too, which covers all that it winds
-    /// around, and may cover more. A face of fewer than three corners is left out.
-    /// [`MeshFile::notes`] counts both, and all else that was not read; [`MeshFile::strict`]
-    /// refuses them. A byte order mark of UTF-8 is skipped; UTF-16 and UTF-32 are refused.
+    /// A flat polygon that crosses itself is cut as a fan too. The fan covers all that the polygon
+    /// winds around, and may cover more. A face of fewer than three corners is left out.
+    /// [`MeshFile::notes`] counts both, and all other parts that were not read;
+    /// [`MeshFile::strict`] refuses them. A byte order mark of UTF-8 is skipped; UTF-16 and UTF-32
+    /// are refused.
     ///
-    /// Cost: O(n log n) for usual polygons, O(n^2) for bad ones. Memory: the file, the mesh, and at
-    /// most a small multiple of the file on the way, whatever its header promises.
+    /// Cost: O(n log n) for usual polygons, O(n^2) for bad ones. Memory: the file, the mesh, and
+    /// temporarily at most a small multiple of the file, for any header.
     ///
     /// # Errors
-    /// [`Error::Input`], naming the file, the element and the value: a file that cannot be read or
-    /// is no regular file, an unknown extension, a malformed file, a mesh that fails [`Mesh::new`],
-    /// one without triangles, or a polygon of more than 131,072 corners whose fan is wrong
-    /// ([`Problem::FaceCorners`]). [`Error::OutOfMemory`] for a file that is too large for the
-    /// memory there is.
+    /// [`Error::Input`], with the file, the element and the value, for:
+    /// - a file that cannot be read or is not regular, an unknown extension, a malformed file;
+    /// - a mesh that fails [`Mesh::new`], or has no triangles;
+    /// - a polygon of more than 131,072 corners whose fan is wrong ([`Problem::FaceCorners`]).
+    ///
+    /// [`Error::OutOfMemory`] for a file that is too large for the memory.
     pub fn read(path: &Path) -> Result<MeshFile, Error> {
         let (file, format, bytes) = open(path)?;
         MeshFile::parse(file, format, &bytes)
     }
 
-    /// Reads another frame of this mesh: a file with the same faces, cut as here, wherever their
-    /// corners have moved.
+    /// Reads another frame of this mesh: a file with the same faces. They are cut as here, even if
+    /// their corners have moved.
     ///
-    /// Frames that are read one by one may be cut differently, if a polygon's first corner no
-    /// longer sees it whole; [`MeshFile::cut_as`] makes them alike.
+    /// Frames that are read separately may be cut differently: a polygon may no longer be visible
+    /// whole from its first corner. [`MeshFile::cut_as`] makes them alike.
     ///
     /// # Errors
     /// As [`MeshFile::read`], except for polygons, which are cut as here; and those of
@@ -87,8 +90,8 @@ impl MeshFile {
         self.parse_frame(file, format, &bytes)
     }
 
-    /// Reads a mesh from the bytes of a file; `name` stands in messages. As [`MeshFile::read`]
-    /// otherwise.
+    /// Reads a mesh from the bytes of a file; messages contain `name`. Otherwise as
+    /// [`MeshFile::read`].
     ///
     /// # Errors
     /// As [`MeshFile::read`], except for the file itself.
@@ -106,8 +109,8 @@ impl MeshFile {
         Ok(MeshFile { mesh: Mesh::new(name, positions, faces)?, polygons, notes })
     }
 
-    /// Reads another frame of this mesh from the bytes of a file. As [`MeshFile::read_frame`]
-    /// otherwise.
+    /// Reads another frame of this mesh from the bytes of a file. Otherwise as
+    /// [`MeshFile::read_frame`].
     ///
     /// # Errors
     /// As [`MeshFile::read_frame`], except for the file itself.
@@ -121,10 +124,10 @@ impl MeshFile {
     }
 
     /// This mesh with the triangles of another file of the same faces, so that both are frames of
-    /// one body; [`Body::moving`](nearmiss::Body::moving) takes only such.
+    /// one body. [`Body::moving`](nearmiss::Body::moving) requires that.
     ///
-    /// Notes that the first frame has too are dropped, and those of faces that were cut as a fan:
-    /// this frame is cut as the first.
+    /// Notes that the first frame has too are dropped. So are those of faces that were cut as a
+    /// fan: this frame is cut as the first.
     ///
     /// # Errors
     /// [`Error::Input`] with [`Problem::FrameVertices`], [`Problem::FrameFaces`] or
@@ -154,22 +157,22 @@ impl MeshFile {
         self.mesh
     }
 
-    /// The faces of the file, for the triangles of an answer.
+    /// The faces of the file, to map the triangles of an answer to.
     pub fn polygons(&self) -> &Polygons {
         &self.polygons
     }
 
-    /// The face of the file that a triangle is part of, as [`Polygons::file_face`].
+    /// The face of the file to which a triangle belongs, as by [`Polygons::file_face`].
     pub fn file_face(&self, triangle: u32) -> u32 {
         self.polygons.file_face(triangle)
     }
 
-    /// Number of faces in the file, [`Mesh::face_count`] if every face was a triangle.
+    /// Number of faces in the file: [`Mesh::face_count`] if every face was a triangle.
     pub fn file_face_count(&self) -> usize {
         self.polygons.count(self.mesh.face_count())
     }
 
-    /// Notes of the reader, one a kind of part: empty if the mesh is all that its file says.
+    /// Notes of the reader, one for each kind of part: empty if the mesh is all of the file.
     ///
     /// A frame that was read by [`MeshFile::read_frame`] has those notes that its first frame does
     /// not have.
@@ -180,9 +183,9 @@ impl MeshFile {
     /// Refuses a mesh whose reader left [notes](MeshFile::notes); returns any other as it is.
     ///
     /// # Errors
-    /// [`Error::Input`] with the first part of the first note: [`Problem::FaceCrosses`],
+    /// [`Error::Input`] with the first part of the first note. It is [`Problem::FaceCrosses`],
     /// [`Problem::FaceFolds`], a face of fewer than three corners, or a line or an element that no
-    /// reader knows.
+    /// reader supports.
     pub fn strict(self) -> Result<MeshFile, Error> {
         match self.notes.first() {
             Some(Note { file, first, .. }) => {
@@ -193,7 +196,7 @@ impl MeshFile {
     }
 }
 
-/// What a reader of a format makes of a file.
+/// The contents of a file, as its format's reader returns them.
 pub(crate) struct Parsed {
     pub positions: Positions,
     pub fans: Fans,
@@ -217,7 +220,7 @@ fn fans(name: String, format: Format, bytes: &[u8]) -> Result<MeshFile, Error> {
 }
 
 /// The first difference that keeps two files from being frames of one mesh. Polygons are the same
-/// if their corners are, however they were cut.
+/// if their corners are, even if they were cut differently.
 fn difference(t0: &MeshFile, t1: &MeshFile) -> Option<Problem> {
     let first = || t0.mesh.name().to_owned();
     let [count_t0, count_t1] = [t0, t1].map(|file| file.mesh.vertex_count());
@@ -247,5 +250,6 @@ fn open(path: &Path) -> Result<(String, Format, Vec<u8>), Error> {
     Ok((file, format, file::read(path, MULTIPLE)?))
 }
 
-/// Most bytes of memory that a byte of a file takes, the file itself with it: texts of short numbers take most.
+/// Maximum memory for each byte of a file, the file itself included, in bytes. Texts of short
+/// numbers need most.
 const MULTIPLE: u64 = 8;

@@ -1,44 +1,44 @@
-//! Notes of a reader: parts of a file that it took otherwise than they stand there.
+//! Notes of a reader: parts of a file that the mesh has differently.
 
 use nearmiss::mesh::Problem;
 use nearmiss::words::counted;
 use std::fmt;
 
-/// A note of a reader: parts of one kind that a mesh lacks or has otherwise than its file, counted.
+/// A note of a reader: parts of one kind that the mesh lacks or has differently, counted.
 ///
-/// Its text names the file, the count, what was done, and the first of them.
-/// [`MeshFile::strict`](crate::MeshFile::strict) makes an error of it.
+/// Its text has the file, the count, the treatment, and the first of them.
+/// [`MeshFile::strict`](crate::MeshFile::strict) turns it into an error.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Note {
     /// The file, as [`Error::Input`](nearmiss::Error::Input) names it.
     pub file: String,
-    /// How the reader treated them.
+    /// Treatment by the reader.
     pub treated: Treated,
-    /// How many there are: at least one.
+    /// Number of parts: at least one.
     pub count: u64,
     /// The first of them in the file, as [`MeshFile::strict`](crate::MeshFile::strict) reports it.
     pub first: Problem,
 }
 
-/// How a reader treated a part of a file that it could not take as it stands.
+/// Treatment of a part of a file that the reader could not keep unchanged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Treated {
     /// A face that crosses itself was cut as a fan around its first corner. The fan covers every
-    /// point that the face winds around, and has all its edges: no contact is missed, and there may
-    /// be more where it covers what the face does not.
+    /// point that the face winds around, and has all its edges. So no contact is missed, and there
+    /// may be more at points that only the fan covers.
     Fan,
     /// A face of fewer than three corners was left out; later faces keep their numbers.
     LeftOut,
     /// Geometry that is no polygon was not read: points, lines, curves and surfaces of OBJ,
     /// elements of PLY.
     NotRead,
-    /// A line was passed over whose first word is no keyword of the format.
+    /// A line whose first word is not a keyword of the format was skipped.
     Unknown,
 }
 
 impl Note {
-    /// Whether both say the same of their files.
+    /// Whether both notes are equal, except for their files.
     pub(crate) fn is_as(&self, other: &Note) -> bool {
         (self.treated, self.count, &self.first) == (other.treated, other.count, &other.first)
     }
@@ -56,7 +56,7 @@ impl fmt::Display for Note {
             Treated::Fan => "cut as a fan around the first corner",
             Treated::LeftOut => "left out",
             Treated::NotRead => "not read",
-            Treated::Unknown => "passed over",
+            Treated::Unknown => "skipped",
         };
         let verb = if *count == 1 { "was" } else { "were" };
         write!(f, "{file}: {} {verb} {done}; the first: {first}", counted(*count, one, many))
@@ -68,7 +68,7 @@ impl fmt::Display for Note {
 pub(crate) struct Notes(Vec<(Treated, u64, Problem)>);
 
 impl Notes {
-    /// Counts one part more; `first` is made for the first of its kind.
+    /// Counts one part; `first` is called for the first of its kind.
     pub fn add(&mut self, treated: Treated, first: impl FnOnce() -> Problem) {
         self.add_many(treated, 1, first);
     }

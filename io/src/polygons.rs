@@ -1,29 +1,28 @@
-//! The faces of a file, behind the triangles that were made of them.
+//! The faces of a file from which the triangles were made.
 
-/// Faces of a file behind the triangles that were made of them.
+/// Faces of a file from which the triangles were made.
 ///
-/// A caller maps the triangles of an answer to faces of the file with it. By default every face is
-/// a triangle. Triangles keep their numbers when a mesh is welded or moved, so the map stays right.
+/// It maps the triangles of an answer to faces of the file. By default every face is a triangle.
+/// Triangles keep their numbers if a mesh is welded or moved, so the map stays right.
 ///
-/// Nothing is kept if every face was a triangle; else 4 bytes a face, and 8 and 4 a corner for a
-/// face that is no fan. A face that was left out has no triangle.
+/// Memory: none if every face was a triangle. Else 4 bytes per face, and 8 bytes plus 4 per corner
+/// for a face that is not a fan. A face that was left out has no triangle.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Polygons {
-    /// The first triangle of each face, ascending; empty where every face was a triangle.
+    /// The first triangle of each face, ascending; empty if every face was a triangle.
     first: Vec<u32>,
-    /// The faces that are no fans, ascending, each with the place in `corners` where its corners
-    /// begin.
+    /// The faces that are not fans, ascending, each with the start of its corners in `corners`.
     cut: Vec<[u32; 2]>,
     corners: Vec<u32>,
 }
 
 impl Polygons {
-    /// Number of faces that `triangles` were made of.
+    /// Number of faces from which `triangles` were made.
     pub(crate) fn count(&self, triangles: usize) -> usize {
         if self.first.is_empty() { triangles } else { self.first.len() }
     }
 
-    /// The face of the file that a triangle is part of, counted from 0 in the file's order; the
+    /// The face of the file to which a triangle belongs, counted from 0 in the file's order. The
     /// triangle itself if every face was a triangle. Cost: a binary search.
     pub fn file_face(&self, triangle: u32) -> u32 {
         match self.first.partition_point(|&first| first <= triangle) {
@@ -62,14 +61,14 @@ impl Polygons {
         }
     }
 
-    /// Keeps the corners of a face that will be no fan; faces come in ascending order.
+    /// Keeps the corners of a face that will not be a fan; faces come in ascending order.
     pub(crate) fn keep(&mut self, face: usize, corners: &[u32]) {
         self.cut.push([face as u32, self.corners.len() as u32]);
         self.corners.extend(corners);
     }
 }
 
-/// What readers gather: every face as a fan around its first corner, in the file's order.
+/// Faces gathered by a reader: each as a fan around its first corner, in the file's order.
 #[derive(Debug, Default)]
 pub(crate) struct Fans {
     pub faces: Vec<[u32; 3]>,
@@ -80,13 +79,13 @@ pub(crate) struct Fans {
 }
 
 impl Fans {
-    /// With room for `count` triangles.
+    /// Makes a gatherer with capacity for `count` triangles.
     pub fn of(count: usize) -> Fans {
         Fans { faces: Vec::with_capacity(count), ..Fans::default() }
     }
 
-    /// The next vertex, which is corner `corner` (from 0) of its face. A face of fewer than three
-    /// is left out afterwards.
+    /// Adds the next vertex, which is corner `corner` (from 0) of its face. A face of fewer than
+    /// three corners is left out afterwards.
     pub fn corner(&mut self, corner: u64, vertex: u32) {
         match corner {
             0 => {
@@ -97,7 +96,7 @@ impl Fans {
                 self.read += 1;
             }
             1 => {}
-            // The first face with more than three corners: those before it are triangles.
+            // The first face with more than three corners: all before it are triangles.
             3 if self.polygons.is_empty() => {
                 self.polygons.first.extend(0..self.read);
                 self.faces.push([self.first, self.last, vertex]);
@@ -107,7 +106,7 @@ impl Fans {
         self.last = vertex;
     }
 
-    /// Leaves out the face that has just come with so many corners, two at most: it keeps its
+    /// Leaves out the last face, which has this number of corners, two at most. It keeps its
     /// number, and has no triangles.
     pub fn leave_out(&mut self, corners: u64) {
         let others = if corners > 0 { self.read - 1 } else { self.read };

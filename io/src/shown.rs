@@ -1,6 +1,6 @@
 //! Tokens of files in messages.
 
-/// A token as a message shows it: text with replaced bytes, and no more than a line's worth.
+/// A token as a message shows it: text with replacement characters, at most a line's worth.
 pub(crate) fn shown(token: &[u8]) -> String {
     const MOST: usize = 40;
     let cut = &token[..token.len().min(MOST)];

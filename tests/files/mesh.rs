@@ -132,7 +132,7 @@ fn colours_are_one_a_triangle() {
     let mesh = mesh(Positions::F32(corners()), &TETRAHEDRON).unwrap();
     for wrong in [0, 3, 5] {
         let error = encode_ply_coloured(&mesh, &mut Vec::new(), &vec![[1, 2, 3]; wrong]).unwrap_err();
-        assert_eq!(error.to_string(), format!("{wrong} colours for 4 triangles: give one each"));
+        assert_eq!(error.to_string(), format!("one colour per triangle is needed, got {wrong} for 4"));
     }
     let mut bytes = Vec::new();
     encode_ply_coloured(&mesh, &mut bytes, &[[1, 2, 3], [4, 5, 6], [7, 8, 9], [10, 11, 12]]).unwrap();

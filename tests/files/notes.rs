@@ -93,7 +93,7 @@ fn other_words_are_counted_or_refused() {
         let [note] = mesh.notes() else { panic!("{word}: {:?}", mesh.notes()) };
         assert_eq!((note.treated, note.count, note.file.as_str()), (Treated::Unknown, 2, "a file"), "{word}");
         assert!(
-            note.to_string().starts_with("a file: 2 lines were passed over; the first: line 7 begins"),
+            note.to_string().starts_with("a file: 2 lines were skipped; the first: line 7 begins"),
             "{note}"
         );
         assert!(mesh.strict().unwrap_err().to_string().contains("no keyword of OBJ"));

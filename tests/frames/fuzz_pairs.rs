@@ -130,21 +130,18 @@ fn finds_stay_mended() {
 #[test]
 fn planted_faults_are_named() {
     let plants: [(Question, &str); 11] = [
-        (("a turned answer", 60, |b| discrete::ask(b, |meets| !meets)), "says true, the oracle false"),
-        (("always apart", 60, |b| discrete::ask(b, |_| false)), "says false, the oracle true"),
+        (("a turned answer", 60, |b| discrete::ask(b, |meets| !meets)), "returns true, the oracle false"),
+        (("always apart", 60, |b| discrete::ask(b, |_| false)), "returns false, the oracle true"),
         (("always separated", 80, |b| continuous::ask(b, |_| Verdict::separated(1.0, 0))), "missed"),
         (
             ("always certain", 80, |b| continuous::ask(b, |_| Verdict::contact(0.0, 0.0, 0, false))),
             "false certificate",
         ),
         (("at the end", 80, |b| continuous::ask(b, |v| Verdict { toi: 1.0, toi_upper: 1.0, ..v })), "late"),
-        (
-            ("no number", 80, |b| continuous::ask(b, |v| Verdict { toi: f64::NAN, ..v })),
-            "times that are none",
-        ),
+        (("no number", 80, |b| continuous::ask(b, |v| Verdict { toi: f64::NAN, ..v })), "times out of range"),
         (("one left out", 120, |b| scene::ask(b, scene::forget)), "truly"),
         (("one left out", 120, |b| near::ask(b, scene::forget)), "is missed"),
-        (("none told", 120, |b| distance::ask(b, scene::forget)), "where the least is"),
+        (("none told", 120, |b| distance::ask(b, scene::forget)), "but the least is"),
         (("a little nearer", 120, |b| distance::ask(b, a_little_nearer)), "a distance"),
         (("all certified", 120, |b| scene::ask(b, all_certified)), "false certificate"),
     ];

@@ -116,7 +116,7 @@ kernels! { [Words], 32, 1024;
 }
 
 const OUTSIDE: &str = "an access outside its memory";
-const UNWRITTEN: &str = "a read of what nothing wrote";
+const UNWRITTEN: &str = "a read of unwritten memory";
 const RACE: &str = "a race between";
 
 /// Launches a kernel of three blocks on 96 fresh words and two counters that the host wrote.

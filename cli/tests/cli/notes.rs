@@ -44,7 +44,7 @@ fn notes_are_told_and_strict_refuses_them() {
     let note = |lines: &str| match lines {
         "f 1 2\n" => "1 face was left out; the first: line 10: a face with 2 corners",
         "l 1 2\nl 1 2\n" => "2 lines were not read; the first: line 10 begins with \"l\"",
-        "foo\n" => "1 line was passed over; the first: line 10 begins with \"foo\"",
+        "foo\n" => "1 line was skipped; the first: line 10 begins with \"foo\"",
         _ => {
             "1 face was cut as a fan around the first corner; the first: face 2, with 4 corners, crosses itself"
         }

@@ -1,4 +1,4 @@
-//! A GPU's context, and what it is made for: every call of the driver is made by a thread that is bound to it.
+//! A GPU's context. A thread is bound to it for every call of the driver.
 
 use super::driver::{Driver, Refusal, answer, driver, refused};
 use super::types::{self, CUcontext, CUdevice, CUdevice_attribute, CUstreamCaptureMode};
@@ -8,7 +8,7 @@ use std::ops::Deref;
 use std::ptr::null_mut;
 use std::sync::Arc;
 
-/// A GPU, as the driver numbers it.
+/// A GPU, by the driver's number.
 #[derive(Clone, Copy)]
 pub struct Gpu {
     driver: &'static Driver,
@@ -19,7 +19,7 @@ impl Gpu {
     /// The GPU with that number.
     pub fn new(ordinal: u32) -> Result<Gpu, Error> {
         let driver = driver()?;
-        // SAFETY: it may be called at any time.
+        // SAFETY: `cuInit` may be called at any time.
         answer(unsafe { (driver.cuInit)(0) }).map_err(refused("starting the CUDA driver"))?;
         let (mut count, mut device) = (0, 0);
         // SAFETY: the driver is started, and writes one number.
@@ -31,62 +31,63 @@ impl Gpu {
                 1 => "there is one GPU, number 0".into(),
                 _ => format!("there are {count} GPUs, numbered from 0"),
             },
-            advice: "ask for a GPU that is there, or run on the CPU",
+            advice: "choose a GPU by its number, or run on the CPU",
         })?;
         // SAFETY: as above.
         answer(unsafe { (driver.cuDeviceGet)(&mut device, number) }).map_err(refused("looking for a GPU"))?;
         Ok(Gpu { driver, device })
     }
 
-    /// What the driver calls it.
+    /// The driver's name of the GPU.
     pub fn name(self) -> Result<String, Error> {
         let mut bytes = [0u8; 256];
-        // SAFETY: the driver writes at most so many bytes.
+        // SAFETY: the driver writes at most this number of bytes.
         let code = unsafe {
             (self.driver.cuDeviceGetName)(bytes.as_mut_ptr().cast(), bytes.len() as c_int, self.device)
         };
-        answer(code).map_err(refused("asking the GPU's name"))?;
+        answer(code).map_err(refused("querying the GPU's name"))?;
         let name = bytes.split(|byte| *byte == 0).next().unwrap_or_default();
         Ok(String::from_utf8_lossy(name).into_owned())
     }
 
-    /// One of its figures.
+    /// One of its attributes.
     pub fn read(self, what: CUdevice_attribute) -> Result<i32, Error> {
         let mut value = 0;
         // SAFETY: the driver writes one number.
         let code = unsafe { (self.driver.cuDeviceGetAttribute)(&mut value, what, self.device) };
-        answer(code).map_err(refused("asking the GPU what it is"))?;
+        answer(code).map_err(refused("querying an attribute of the GPU"))?;
         Ok(value)
     }
 
-    /// Its primary context: the one that all of a program shares, CUDA's runtime too.
+    /// Its primary context, which the whole program shares, CUDA's runtime included.
     pub fn context(self) -> Result<Arc<Context>, Error> {
         let mut handle = null_mut();
-        // SAFETY: the driver writes one handle, which is released once: when this is dropped.
+        // SAFETY: the driver writes one handle, which is released once, by `drop`.
         answer(unsafe { (self.driver.cuDevicePrimaryCtxRetain)(&mut handle, self.device) })
             .map_err(refused("making a context"))?;
         Ok(Arc::new(Context { gpu: self, handle, is_borrowed: false }))
     }
 
-    /// The GPU of a context of the caller, or of the one that this thread is bound to, and that context.
+    /// The GPU of a context of the caller, or of the one that this thread is bound to; and that
+    /// context.
     ///
     /// # Safety
-    /// The context is one of the driver's, or null, and outlives what is returned.
+    /// The context is one of the driver's, or null, and outlives the result.
     pub unsafe fn of(context: CUcontext) -> Result<(Gpu, Arc<Context>), Error> {
         let driver = driver()?;
-        // SAFETY: it may be called at any time.
+        // SAFETY: `cuInit` may be called at any time.
         answer(unsafe { (driver.cuInit)(0) }).map_err(refused("starting the CUDA driver"))?;
         let mut handle = context;
         if handle.is_null() {
             // SAFETY: the driver is started, and writes one handle.
             answer(unsafe { (driver.cuCtxGetCurrent)(&mut handle) })
-                .map_err(refused("asking for a context"))?;
+                .map_err(refused("querying the current context"))?;
         }
         if handle.is_null() {
             return Err(Error::Device {
                 what: "borrowing a context".into(),
-                text: "none was given, and this thread is bound to none".into(),
-                advice: "give one, or bind the thread",
+                text: "the context is null, and this thread is bound to none".into(),
+                advice: "pass a context, or bind the thread to one",
             });
         }
         let unknown = Gpu { driver, device: 0 };
@@ -95,22 +96,23 @@ impl Gpu {
         let mut device = 0;
         // SAFETY: the thread is bound to the context, and the driver writes one number.
         answer(unsafe { (bound.cuCtxGetDevice)(&mut device) })
-            .map_err(refused("asking whose a context is"))?;
+            .map_err(refused("querying the GPU of a context"))?;
         drop(bound);
         context.gpu.device = device;
         Ok((context.gpu, Arc::new(context)))
     }
 }
 
-/// A GPU's context: its primary one, or the caller's. Whatever lives in it holds it.
+/// A GPU's context: its primary one, or the caller's. Every object in it holds it.
 pub struct Context {
     gpu: Gpu,
     handle: CUcontext,
-    /// Whether it is the caller's, who will destroy it.
+    /// Whether it is the caller's, who destroys it.
     is_borrowed: bool,
 }
 
-// SAFETY: the handle is the driver's, whose functions any thread may call, several at once too.
+// SAFETY: the handle is the driver's. Any thread may call the driver's functions, also at the same
+// time.
 unsafe impl Send for Context {}
 // SAFETY: as above.
 unsafe impl Sync for Context {}
@@ -121,9 +123,11 @@ impl Context {
         self.gpu.device as u32
     }
 
-    /// Binds the calling thread to the context, as long as the answer lives. A thread that was bound to another is bound
-    /// to that again then; one that was bound to none stays, so that the next call is cheaper. Meanwhile graphs that other threads
-    /// record are none of the thread's business, whatever mode these chose: what we do cannot touch them.
+    /// Binds the calling thread to the context as long as the result lives.
+    /// A thread that was bound to another context is bound to that again afterwards. One that was
+    /// bound to none stays bound: the next call is cheaper.
+    /// Meanwhile the thread's capture mode is thread-local: graphs that other threads record do not
+    /// restrict it. Our calls cannot affect those graphs.
     pub fn bind(&self) -> Result<Bound<'_>, Refusal> {
         let mut before = null_mut();
         // SAFETY: the driver is started, and writes one handle.
@@ -144,16 +148,17 @@ impl Drop for Context {
         if self.is_borrowed {
             return;
         }
-        // SAFETY: retained once, and nothing is left that lives in it. A refusal finds nobody to be told.
+        // SAFETY: retained once, and no object in it is left. A refusal cannot be reported.
         let _ = unsafe { (self.gpu.driver.cuDevicePrimaryCtxRelease_v2)(self.gpu.device) };
     }
 }
 
-/// The driver, for a thread that is bound to a context. Its handles are pointers, so it stays on that thread.
+/// The driver, for a thread that is bound to a context. Its handles are pointers, so it stays on
+/// that thread.
 pub struct Bound<'a> {
     context: &'a Context,
     before: CUcontext,
-    /// How the thread minded graphs of others before.
+    /// The thread's capture mode before.
     mode: CUstreamCaptureMode,
 }
 
@@ -166,10 +171,12 @@ impl Deref for Bound<'_> {
 
 impl Drop for Bound<'_> {
     fn drop(&mut self) {
-        // SAFETY: the driver reads and writes one number, which it gave. It has no reason to refuse.
+        // SAFETY: the driver reads and writes one number, which came from it. It has no reason to
+        // refuse.
         let _ = unsafe { (self.cuThreadExchangeStreamCaptureMode)(&mut self.mode) };
         if !self.before.is_null() && self.before != self.context.handle {
-            // SAFETY: the thread was bound to it before; if it is gone the driver refuses, and nobody is left to be told.
+            // SAFETY: the thread was bound to it before. If it is gone the driver refuses; a
+            // refusal cannot be reported.
             let _ = unsafe { (self.cuCtxSetCurrent)(self.before) };
         }
     }

@@ -1,7 +1,8 @@
 //! # The driver, found when the program runs
 //!
-//! Every function is looked up once, before the first call; what is missing is told in a sentence. An answer is a number: a
-//! newer driver may have codes that no list of ours has.
+//! Every function is looked up once, before the first call. A missing one is reported in a
+//! sentence. The result of a call is a number: a newer driver may have codes that no list of ours
+//! has.
 
 use super::types::{
     self, CUcontext, CUdevice, CUdevice_attribute, CUdeviceptr, CUevent, CUfunction, CUgraph, CUgraphExec,
@@ -20,33 +21,36 @@ impl Refusal {
     /// The machine, or the GPU, has no more memory.
     pub const OUT_OF_MEMORY: Refusal = Refusal(types::CUDA_ERROR_OUT_OF_MEMORY);
 
-    /// Whether it is that a graph is being recorded: in this thread, or in another by CUDA's global mode.
+    /// Whether the cause is a graph that is being recorded: in this thread, or in another in CUDA's
+    /// global mode.
     fn is_of_recording(self) -> bool {
         (types::CUDA_ERROR_STREAM_CAPTURE_UNSUPPORTED..=types::CUDA_ERROR_STREAM_CAPTURE_WRONG_THREAD)
             .contains(&self.0)
     }
 
-    /// The driver's name and text of the error, where it has them.
+    /// The driver's name and text of the error, if it has them.
     pub fn text(self) -> String {
         let words = |driver: &Driver| {
             let (mut name, mut text) = (std::ptr::null(), std::ptr::null());
-            // SAFETY: both places are ours. The driver takes any code, and knows it or refuses.
+            // SAFETY: both pointers are to our variables. The driver accepts any code: it names or
+            // refuses it.
             let answers = unsafe {
                 [(driver.cuGetErrorName)(self.0, &mut name), (driver.cuGetErrorString)(self.0, &mut text)]
             };
             if answers != [0, 0] || name.is_null() || text.is_null() {
                 return None;
             }
-            // SAFETY: what the driver names so are strings that end with zero and stay.
+            // SAFETY: the driver's names are strings that end with zero and live as long as the
+            // library.
             let [name, text] = [name, text].map(|words| unsafe { CStr::from_ptr(words) }.to_string_lossy());
             Some(format!("{name}: {text}"))
         };
         let known = DRIVER.get().and_then(|found| found.as_ref().ok()).and_then(|(driver, _)| words(driver));
-        known.unwrap_or_else(|| format!("error {}, for which the driver has no words", self.0))
+        known.unwrap_or_else(|| format!("error {}, which the driver does not describe", self.0))
     }
 }
 
-/// What the driver answered.
+/// The result of a call of the driver.
 pub fn answer(code: u32) -> Result<(), Refusal> {
     if code == 0 { Ok(()) } else { Err(Refusal(code)) }
 }
@@ -59,7 +63,7 @@ pub fn refused(what: &'static str) -> impl Fn(Refusal) -> Error {
             what: what.into(),
             text: refusal.text(),
             advice: if refusal.is_of_recording() {
-                "a graph is being recorded: `submit` into it, and ask for frames when it is, or record in CUDA's thread-local mode"
+                "a graph is being recorded: only `submit` until it ends, or record in CUDA's thread-local mode"
             } else {
                 "look at `nvidia-smi`, or run on the CPU"
             },
@@ -80,9 +84,10 @@ macro_rules! functions {
         }
 
         impl Driver {
-            /// All of them, or the name of one that is missing.
+            /// Looks up all of them; the error is the name of a missing one.
             fn new(library: &Library) -> Result<Driver, &'static str> {
-                // SAFETY: the types are the functions': those that cudarc has from the driver's header, which a test compares.
+                // SAFETY: the functions have these types: those that cudarc has from the driver's
+                // header. A test compares them.
                 unsafe {
                     Ok(Driver {
                         $($name: function(library, stringify!($name)).ok_or(stringify!($name))?,)*
@@ -92,7 +97,8 @@ macro_rules! functions {
             }
         }
 
-        /// The arguments are those that cudarc has from the driver's header: else this does not compile.
+        /// The arguments are those that cudarc has from the driver's header; otherwise this does
+        /// not compile.
         #[cfg(test)]
         mod as_declared {
             use cudarc::driver::sys::{self, *};
@@ -149,14 +155,14 @@ functions! {
         cuMemcpyDtoHAsync_v2(*mut c_void, CUdeviceptr, usize, CUstream);
         cuMemcpyDtoH_v2(*mut c_void, CUdeviceptr, usize);
     }
-    // A code is an enum there.
+    // In cudarc a code is an enum.
     with_any_code {
         cuGetErrorName(u32, *mut *const c_char);
         cuGetErrorString(u32, *mut *const c_char);
     }
 }
 
-/// A function of the driver's library.
+/// Looks up a function of the driver's library.
 ///
 /// # Safety
 /// `F` is the function's type.
@@ -165,16 +171,16 @@ unsafe fn function<F: Copy>(library: &Library, name: &str) -> Option<F> {
     unsafe { library.get::<F>(name.as_bytes()) }.ok().map(|found| *found)
 }
 
-/// The driver's library, by system.
+/// The driver's library, by operating system.
 const LIBRARY: &str = if cfg!(windows) { "nvcuda.dll" } else { "libcuda.so.1" };
 
-/// The functions, and the library that they are of: it is never unloaded.
+/// The functions and their library, which is never unloaded.
 static DRIVER: OnceLock<Result<(Driver, Library), String>> = OnceLock::new();
 
 /// Finds the driver, once.
 ///
 /// # Errors
-/// A sentence that says why there is none.
+/// [`Error::Device`], with the reason why there is none.
 pub fn driver() -> Result<&'static Driver, Error> {
     let found = DRIVER.get_or_init(|| {
         // SAFETY: loading NVIDIA's driver runs its initialisers, as linking against it would.
@@ -204,7 +210,7 @@ mod tests {
 
     #[test]
     fn an_error_always_has_a_text() {
-        // With a driver and without: one that it knows, and one that nobody does.
+        // With a driver and without: a known code, and an unknown one.
         for code in [34, 12_345] {
             assert!(!Refusal(code).text().is_empty());
         }
@@ -212,7 +218,8 @@ mod tests {
         assert!(Refusal(12_345).text().contains("12345"));
     }
 
-    /// What a kernel comes to that cannot be launched, is killed, or reads what is not its own: an error with its name.
+    /// The error of a kernel that cannot be launched, is killed, or reads out of bounds has the
+    /// kernel's name.
     #[test]
     fn a_failed_launch_names_its_kernel() {
         use cudarc::driver::sys::CUresult::*;

@@ -1,4 +1,5 @@
-//! An NVIDIA GPU, through its driver. The kernels' PTX is embedded; the driver compiles it for the GPU it finds.
+//! An NVIDIA GPU, through its driver. The kernels' PTX is embedded; the driver compiles it for the
+//! GPU.
 
 mod context;
 mod driver;
@@ -28,14 +29,14 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use stream::Stream;
 use types::{CUcontext, CUstream};
 
-/// The kernels, as build.rs found or made them.
+/// The kernels' PTX, found or compiled by build.rs.
 const PTX: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/nearmiss.ptx.zst"));
-/// The stamp of the sources that this program was built with.
+/// The stamp of the sources of this program.
 const STAMP: &str = env!("NEARMISS_STAMP");
-/// The oldest GPU that the PTX is for: compute capability 8.0.
+/// The oldest GPU that the PTX supports: compute capability 8.0.
 const CAPABILITY: (i32, i32) = (8, 0);
 
-/// What every call begins with.
+/// The first step of every call.
 const BINDING: &str = "binding a thread to the GPU";
 
 /// A GPU, its context, one stream, and a module for each kernel that was used.
@@ -44,17 +45,17 @@ pub struct Cuda {
     processors: u32,
     resident_lanes: u32,
     staging: Mutex<Staging>,
-    /// Counts what may change the GPU's memory: what was read ahead holds until the next of these.
+    /// Counts changes of the GPU's memory: bytes that were read ahead are valid until the next one.
     epoch: AtomicU64,
     parts: Parts,
     functions: Mutex<HashMap<&'static str, Function>>,
     stream: Stream,
-    /// Where graphs are recorded, one at a time: what others put in the stream meanwhile is not theirs.
+    /// The stream for recording graphs, one at a time. Nothing else uses it meanwhile.
     recorder: Mutex<Stream>,
     context: Arc<Context>,
 }
 
-/// A point in the GPU's stream.
+/// An event in the GPU's stream.
 pub struct Event(stream::Event);
 
 impl Event {
@@ -65,7 +66,7 @@ impl Event {
     }
 }
 
-/// What a lock guards, also after a panic: nothing is left half done that the next call would mind.
+/// Locks, also after a panic: a panic leaves no state that the next call cannot use.
 fn locked<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
     lock.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -101,7 +102,7 @@ impl Cuda {
             return Err(Error::Device {
                 what: format!("using the GPU {name}"),
                 text: format!(
-                    "it has compute capability {}.{}, the kernels need 8.0",
+                    "compute capability must be at least 8.0, got {}.{}",
                     capability.0, capability.1
                 ),
                 advice: "run on the CPU",
@@ -133,12 +134,12 @@ impl Cuda {
         })
     }
 
-    /// The driver, for this thread, which every call below asks for once.
+    /// The driver, for this thread. Every call below binds once.
     fn bind(&self) -> Result<Bound<'_>, Error> {
         self.context.bind().map_err(refused(BINDING))
     }
 
-    /// What the driver calls the GPU.
+    /// The driver's name of the GPU.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -153,12 +154,12 @@ impl Cuda {
         self.stream.handle() as u64
     }
 
-    /// Blocks of that many lanes that fill the GPU.
+    /// Number of blocks with that many lanes that fill the GPU.
     pub fn resident_blocks(&self, lanes: u32) -> u32 {
         self.resident_lanes / lanes
     }
 
-    /// Zeroed memory of the GPU.
+    /// Allocates zeroed memory of the GPU.
     pub fn memory(&self, bytes: usize) -> Result<Memory, Error> {
         let gpu = self.bind()?;
         let mut memory =
@@ -170,7 +171,7 @@ impl Cuda {
                 },
                 other => refused("taking memory of the GPU")(other),
             })?;
-        // What reads it comes behind this in the stream.
+        // Its readers come later in the stream.
         self.filled(&gpu, &mut memory, 0)?;
         Ok(memory)
     }
@@ -185,18 +186,19 @@ impl Cuda {
         memory.fill(gpu, &self.stream, byte).map_err(refused("setting memory of the GPU"))
     }
 
-    /// What was read ahead holds no longer.
+    /// Invalidates the bytes that were read ahead.
     pub fn changes(&self) {
         self.epoch.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Copies bytes to the GPU, through page-locked memory; does not wait for the GPU.
+    /// Copies bytes to the GPU through page-locked memory; does not wait for the GPU.
     pub fn write(&self, memory: &mut Memory, bytes: &[u8]) -> Result<(), Error> {
         self.changes();
         locked(&self.staging).write(&self.bind()?, &self.stream, memory, bytes)
     }
 
-    /// Copies bytes from the GPU, through page-locked memory; waits for all work before, unless it was read ahead.
+    /// Copies bytes from the GPU through page-locked memory; waits for all work before, unless they
+    /// were read ahead.
     pub fn read(&self, memory: &Memory, bytes: &mut [u8]) -> Result<(), Error> {
         if let Some(known) = self.known(memory, bytes.len()) {
             bytes.copy_from_slice(known.bytes());
@@ -208,13 +210,13 @@ impl Cuda {
             return staging.read(&gpu, &self.stream, memory, bytes);
         }
         drop(staging);
-        // The host still looks at what was read ahead, of which this is not: a copy of its own.
+        // The host still reads other bytes that were read ahead, so this is a separate copy.
         self.stream.wait(&gpu).map_err(refused("waiting for the GPU"))?;
         memory.read_now(&gpu, bytes).map_err(refused("copying from the GPU"))
     }
 
-    /// Copies the first bytes of several buffers, as many as fit into page-locked memory, with one wait: those that are
-    /// asked for next are then there.
+    /// Copies the first bytes of several buffers with one wait, if they fit into page-locked
+    /// memory. The next reads find them there.
     pub fn read_ahead(&self, all: &[(&Memory, usize)]) -> Result<(), Error> {
         let epoch = self.epoch.load(Ordering::Relaxed);
         locked(&self.staging).read_ahead(&self.bind()?, &self.stream, epoch, all)
@@ -225,38 +227,38 @@ impl Cuda {
         locked(&self.staging).known(self.epoch.load(Ordering::Relaxed), memory.addr(), bytes)
     }
 
-    /// Starts a kernel; where only launches are allowed, one whose module was loaded before.
+    /// Starts a kernel. If only launches are allowed, its module must be loaded already.
     pub fn launch<E: Kernel>(&self, blocks: u32, args: &E::Args, sealed: bool) -> Result<(), Error> {
         self.changes();
-        // On the default stream a kernel may be loaded on the way: there is no graph that it could spoil.
+        // On the default stream a kernel may be loaded meanwhile: that stream is never captured.
         if sealed && !self.stream.is_default() && !locked(&self.functions).contains_key(E::NAME) {
             return Err(Error::Bug { what: format!("{} was loaded in a frame that only launches", E::NAME) });
         }
         self.with_function::<E, _>(|gpu, function| {
-            // SAFETY: the kernel takes one parameter of this type (the stamp says that host and PTX come from the same
-            // sources), and its spans are memory of this GPU that the caller's buffers keep alive: freeing a buffer
-            // waits for the launches before it.
+            // SAFETY: the kernel takes one parameter of this type: by the stamp, host and PTX come
+            // from the same sources. Its spans are memory of this GPU that the caller's buffers
+            // keep alive: freeing a buffer waits for the launches before it.
             unsafe {
                 function.launch(gpu, &self.stream, (blocks, E::LANES, E::SHARED), std::slice::from_ref(args))
             }
         })
     }
 
-    /// Loads a kernel, if it was not.
+    /// Loads a kernel, if it is not loaded yet.
     pub fn load<E: Kernel>(&self) -> Result<(), Error> {
         self.with_function::<E, _>(|_, _| Ok(()))
     }
 
-    /// Whether work of ours can be made a graph.
+    /// Whether our work can be recorded as a graph.
     pub fn can_record(&self) -> Result<bool, Error> {
-        self.stream.can_capture(&self.bind()?).map_err(refused("asking a stream"))
+        self.stream.can_capture(&self.bind()?).map_err(refused("querying a stream"))
     }
 
-    /// Does what is listed.
+    /// Executes a list.
     ///
     /// # Safety
-    /// The listed launches are of kernels of ours, which are loaded, with their arguments, and what those name is memory that lives
-    /// until they are over.
+    /// The listed launches are of our kernels, which are loaded, with their arguments. The memory
+    /// that these name lives until the launches end.
     pub unsafe fn perform(&self, list: &Listing, marks: &[&Event]) -> Result<(), Error> {
         self.changes();
         let gpu = self.bind()?;
@@ -265,10 +267,11 @@ impl Cuda {
         unsafe { self.put((&gpu, &self.stream), list, pass) }.map_err(refused("launching a frame"))
     }
 
-    /// Makes a graph of what is listed.
+    /// Records a list as a graph.
     ///
     /// # Safety
-    /// As of [`Cuda::perform`], whenever the graph is launched; and the marks are kept as long as it.
+    /// As for [`Cuda::perform`], whenever the graph is launched. The marks live as long as the
+    /// graph.
     pub unsafe fn record(&self, list: &Listing, marks: &[&Event]) -> Result<Graph, Error> {
         let gpu = self.bind()?;
         let stream = locked(&self.recorder);
@@ -285,10 +288,10 @@ impl Cuda {
         graph.launch(&self.bind()?, &self.stream).map_err(refused("launching a frame"))
     }
 
-    /// Puts what is listed in a stream.
+    /// Puts a list in a stream.
     ///
     /// # Safety
-    /// As of [`Cuda::perform`].
+    /// As for [`Cuda::perform`].
     unsafe fn put(
         &self,
         (gpu, stream): (&Bound, &Stream),
@@ -309,14 +312,14 @@ impl Cuda {
         })
     }
 
-    /// How many blocks of a kernel run at once: its registers and shared memory tell.
+    /// Number of blocks of a kernel that run at once. It depends on registers and shared memory.
     pub fn blocks_at_once<E: Kernel>(&self) -> Result<u32, Error> {
         let each =
             self.with_function::<E, _>(|gpu, function| function.blocks_at_once(gpu, E::LANES, E::SHARED))?;
         Ok(each * self.processors)
     }
 
-    /// Hands a kernel to `body`; its module is loaded at the first time.
+    /// Calls `body` with a kernel; its module is loaded at its first use.
     fn with_function<E: Kernel, T>(
         &self,
         body: impl FnOnce(&Bound, &Function) -> Result<T, Refusal>,
@@ -337,12 +340,12 @@ impl Cuda {
         body(&gpu, function).map_err(refused(E::NAME))
     }
 
-    /// Moves a point behind all work so far.
+    /// Moves an event after all work so far.
     pub fn mark(&self, event: &Event) -> Result<(), Error> {
         event.0.record(&self.bind()?, &self.stream).map_err(refused("recording an event"))
     }
 
-    /// A point in the stream.
+    /// Makes an event in the stream.
     pub fn event(&self) -> Result<Event, Error> {
         let gpu = self.bind()?;
         let event = stream::Event::new(&self.context, &gpu).map_err(refused("making an event"))?;
@@ -352,16 +355,16 @@ impl Cuda {
 }
 
 impl Drop for Cuda {
-    /// Copies under way must not outlive the page-locked memory that they read.
+    /// Copies in progress must not outlive the page-locked memory that they read.
     fn drop(&mut self) {
-        // A GPU that fails here has failed before, and nobody is left to be told.
+        // A GPU that fails here has failed before; the failure cannot be reported.
         if let Ok(gpu) = self.context.bind() {
             let _ = self.stream.wait(&gpu);
         }
     }
 }
 
-/// Whether kernels with that stamp come from this program's sources.
+/// Checks that kernels with that stamp come from this program's sources.
 fn is_ours(found: u64) -> Result<(), Error> {
     let found = format!("{found:016x}");
     if found == STAMP { Ok(()) } else { Err(Error::KernelMismatch { found, wanted: STAMP.into() }) }

@@ -14,14 +14,15 @@ pub struct Module {
     handle: CUmodule,
 }
 
-// SAFETY: the handle is the driver's, whose functions any thread may call, several at once too.
+// SAFETY: the handle is the driver's. Any thread may call the driver's functions, also at the same
+// time.
 unsafe impl Send for Module {}
 // SAFETY: as above.
 unsafe impl Sync for Module {}
 
 impl Module {
-    /// Compiles a text, with that many registers of a lane at most. The driver keeps the lines of the Rust sources, for profilers;
-    /// the machine code is the same.
+    /// Compiles a text, with at most that many registers a lane. The driver keeps the lines of the
+    /// Rust sources, for profilers; the machine code is the same.
     pub fn new(
         context: &Arc<Context>,
         gpu: &Bound,
@@ -36,8 +37,8 @@ impl Module {
             values.push(std::ptr::without_provenance_mut(registers as usize));
         }
         let mut handle = null_mut();
-        // SAFETY: the text ends with zero; there is a value for each option, a number in the place of a pointer; the
-        // driver writes one handle, which is unloaded once.
+        // SAFETY: the text ends with zero. There is a value for each option, a number in place of a
+        // pointer. The driver writes one handle, which is unloaded once.
         answer(unsafe {
             (gpu.cuModuleLoadDataEx)(
                 &mut handle,
@@ -59,7 +60,7 @@ impl Module {
         Ok(Function { handle, _module: self })
     }
 
-    /// A number in the GPU's memory.
+    /// Reads a number in the GPU's memory.
     pub fn global(&self, gpu: &Bound, name: &CStr) -> Result<u64, Refusal> {
         let (mut addr, mut bytes, mut value) = (0, 0, 0u64);
         // SAFETY: the module lives, the name ends with zero, and the driver writes two numbers.
@@ -67,13 +68,13 @@ impl Module {
         if bytes != size_of::<u64>() {
             return Err(Refusal(types::CUDA_ERROR_NOT_FOUND));
         }
-        // SAFETY: so many bytes are there, and as many here; the call waits for the copy.
+        // SAFETY: both sides have this number of bytes; the call waits for the copy.
         answer(unsafe { (gpu.cuMemcpyDtoH_v2)((&raw mut value).cast(), addr, bytes) })?;
         Ok(value)
     }
 }
 
-/// A text that ends with zero. One with a zero inside is no text for the driver.
+/// A text that ends with zero. The driver accepts no text with a zero inside.
 fn text(text: &str) -> Result<CString, Refusal> {
     CString::new(text).map_err(|_| Refusal(types::CUDA_ERROR_INVALID_VALUE))
 }
@@ -81,8 +82,8 @@ fn text(text: &str) -> Result<CString, Refusal> {
 impl Drop for Module {
     fn drop(&mut self) {
         if let Ok(gpu) = self.context.bind() {
-            // SAFETY: loaded once, unloaded once, after the GPU's work was waited for (`Cuda::drop`) or before there was
-            // any. A refusal finds nobody to be told.
+            // SAFETY: loaded once, unloaded once, after the GPU's work was waited for
+            // (`Cuda::drop`) or before there was any. A refusal cannot be reported.
             let _ = unsafe { (gpu.cuModuleUnload)(self.handle) };
         }
     }
@@ -94,17 +95,18 @@ pub struct Function {
     _module: Module,
 }
 
-// SAFETY: the handle is the driver's, whose functions any thread may call, several at once too.
+// SAFETY: the handle is the driver's. Any thread may call the driver's functions, also at the same
+// time.
 unsafe impl Send for Function {}
 // SAFETY: as above.
 unsafe impl Sync for Function {}
 
 impl Function {
-    /// Starts it.
+    /// Launches the kernel.
     ///
     /// # Safety
-    /// `parameter` begins with the kernel's only one, of its type, and what that names is memory that lives until the launch is
-    /// over.
+    /// `parameter` begins with the kernel's only parameter, of its type. The memory that it names
+    /// lives until the launch ends.
     pub unsafe fn launch<T>(
         &self,
         gpu: &Bound,
@@ -113,7 +115,8 @@ impl Function {
         parameter: &[T],
     ) -> Result<(), Refusal> {
         let mut parameters = [parameter.as_ptr().cast_mut().cast::<c_void>()];
-        // SAFETY: module and stream live; the driver copies the parameter, and writes nothing there, before it returns; the rest is the caller's promise.
+        // SAFETY: module and stream live. Before it returns, the driver copies the parameter and
+        // writes nothing there. The caller promises the rest.
         answer(unsafe {
             (gpu.cuLaunchKernel)(
                 self.handle,
@@ -131,7 +134,7 @@ impl Function {
         })
     }
 
-    /// Blocks of it that a multiprocessor runs at once.
+    /// Number of its blocks that a multiprocessor runs at once.
     pub fn blocks_at_once(&self, gpu: &Bound, lanes: u32, shared: u32) -> Result<u32, Refusal> {
         let mut blocks = 0;
         // SAFETY: the module lives, and the driver writes one number.

@@ -1,5 +1,5 @@
-//! Page-locked memory that transfers go through: copies run beside the host, and what a frame is sure to be asked for is
-//! read ahead of being asked, all of it with one wait.
+//! Page-locked memory for transfers: copies run concurrently with the host. The results that every
+//! frame needs are read ahead, all with one wait.
 
 use super::context::{Bound, Context};
 use super::driver::refused;
@@ -8,15 +8,16 @@ use super::stream::Stream;
 use crate::error::Error;
 use std::sync::Arc;
 
-/// Bytes of it at first, and of the largest piece of an upload.
+/// Initial size in bytes, and the largest piece of an upload.
 const FIRST: usize = 8 << 20;
 const PIECE: usize = 4 << 20;
-/// It grows up to so many bytes for what is read ahead; more is read when it is asked for, in pieces.
+/// Maximum size in bytes. It grows up to this for reading ahead; more is read on demand, in pieces.
 const MOST: usize = 256 << 20;
-/// Where a copy may begin: enough for every element.
+/// Alignment of a copy: enough for every element.
 const ALIGN: usize = 256;
 
-/// The memory. What lies before `used` may still be under way. Who looks at what was read ahead holds it too.
+/// The memory. Copies before `used` may still be in progress. A reader of bytes that were read
+/// ahead holds it too.
 pub struct Staging {
     context: Arc<Context>,
     memory: Arc<Locked>,
@@ -33,7 +34,8 @@ struct Ahead {
     bytes: usize,
 }
 
-/// Bytes that were read ahead. As long as there are some, nothing else goes through the memory.
+/// Bytes that were read ahead. While there are some, nothing else is transferred through the
+/// memory.
 pub struct Known {
     memory: Arc<Locked>,
     at: usize,
@@ -52,25 +54,26 @@ fn locked(context: &Arc<Context>, gpu: &Bound, bytes: usize) -> Result<Arc<Locke
 }
 
 impl Staging {
-    /// Takes the memory.
+    /// Allocates the memory.
     pub fn new(context: &Arc<Context>, gpu: &Bound) -> Result<Staging, Error> {
         let memory = locked(context, gpu, FIRST)?;
         Ok(Staging { context: context.clone(), memory, used: 0, ahead: Vec::new(), epoch: 0 })
     }
 
-    /// Whether the host still looks at what was read ahead.
+    /// Whether the host still reads bytes that were read ahead.
     pub fn is_looked_at(&mut self) -> bool {
         self.own().is_err()
     }
 
-    /// The memory, if nobody looks at it. Nobody but `known` hands it on, so that this holds as long as `self` is borrowed.
+    /// The memory, if nothing reads it. Only `known` shares it, so this holds as long as `self` is
+    /// borrowed.
     fn own(&mut self) -> Result<&mut Locked, Error> {
-        let seen = || Error::Bug { what: "a transfer while the host looks at another".into() };
+        let seen = || Error::Bug { what: "a transfer while the host reads another".into() };
         Arc::get_mut(&mut self.memory).ok_or_else(seen)
     }
 
-    /// Where so many bytes are free. Waits for what is under way only where there is no more room, and takes more memory
-    /// only where there never was.
+    /// The start of this number of free bytes. Waits for copies in progress only if no space is
+    /// left. Allocates only if the memory was always too small.
     fn room(&mut self, gpu: &Bound, stream: &Stream, bytes: usize) -> Result<usize, Error> {
         let wanted = bytes.next_multiple_of(ALIGN);
         let there = self.own()?.len();
@@ -87,7 +90,7 @@ impl Staging {
         Ok(at)
     }
 
-    /// Copies bytes to the GPU behind all that was started before; waits for nothing but room.
+    /// Copies bytes to the GPU after all work started before; waits only for space.
     pub fn write(
         &mut self,
         gpu: &Bound,
@@ -99,14 +102,14 @@ impl Staging {
             let at = self.room(gpu, stream, piece.len())?;
             let from = self.own()?.piece_mut(at, piece.len());
             from.copy_from_slice(piece);
-            // SAFETY: this room is not touched again before the stream was waited for (`room`), nor given back (the GPU's
-            // drop waits).
+            // SAFETY: this space is not accessed again before the stream was waited for (`room`),
+            // nor freed (the GPU's drop waits).
             unsafe { to.write(gpu, stream, start, from) }.map_err(refused("copying to the GPU"))?;
         }
         Ok(())
     }
 
-    /// Starts the copy of a piece of a buffer, and says where it will be.
+    /// Starts the copy of a part of a buffer; returns its destination.
     fn start(
         &mut self,
         gpu: &Bound,
@@ -116,12 +119,14 @@ impl Staging {
     ) -> Result<usize, Error> {
         let at = self.room(gpu, stream, bytes)?;
         let to = self.own()?.piece_mut(at, bytes);
-        // SAFETY: nobody reads this room before the stream was waited for, which every caller does; else as in `write`.
+        // SAFETY: nothing reads this space before the stream was waited for, which every caller
+        // does. Otherwise as in `write`.
         unsafe { from.read(gpu, stream, start, to) }.map_err(refused("copying from the GPU"))?;
         Ok(at)
     }
 
-    /// Waits for all work before: then all room is free, but for what was read ahead.
+    /// Waits for all work before. Then all space is free, except that of bytes that were read
+    /// ahead.
     fn wait(&mut self, gpu: &Bound, stream: &Stream) -> Result<(), Error> {
         stream.wait(gpu).map_err(refused("copying from the GPU"))?;
         self.used = self.ahead.iter().map(|a| (a.at + a.bytes).next_multiple_of(ALIGN)).max().unwrap_or(0);
@@ -144,7 +149,8 @@ impl Staging {
         if bytes.is_empty() { self.wait(gpu, stream) } else { Ok(()) }
     }
 
-    /// Copies the first bytes of several buffers from the GPU with one wait, where they fit; they hold for that epoch.
+    /// Copies the first bytes of several buffers from the GPU with one wait, if they fit. They are
+    /// valid for that epoch.
     pub fn read_ahead(
         &mut self,
         gpu: &Bound,
@@ -158,7 +164,7 @@ impl Staging {
         if sum > MOST {
             return Ok(());
         }
-        // Room for all at once, so that none of it makes room for another.
+        // Space for all at once, so that no copy takes the space of another.
         let whole = self.room(gpu, stream, sum)?;
         self.used = whole;
         let mut ahead = Vec::with_capacity(all.len());
@@ -167,7 +173,7 @@ impl Staging {
             ahead.push(Ahead { addr: memory.addr(), at, bytes: *bytes });
         }
         (self.ahead, self.epoch) = (ahead, epoch);
-        // What could not be waited for is not there.
+        // Bytes whose wait failed are not valid.
         self.wait(gpu, stream).inspect_err(|_| self.ahead.clear())
     }
 

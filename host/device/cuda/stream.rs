@@ -1,4 +1,4 @@
-//! The order of the GPU's work: a stream, and points in it.
+//! The order of the GPU's work: a stream, and events in it.
 
 use super::context::{Bound, Context};
 use super::driver::{Refusal, answer};
@@ -6,21 +6,22 @@ use super::types::{self, CUevent, CUstream};
 use std::ptr::null_mut;
 use std::sync::Arc;
 
-/// Work that the GPU does in order. It waits for nobody else's.
+/// Work that the GPU does in order. It waits for no other stream's work.
 pub struct Stream {
     context: Arc<Context>,
     handle: CUstream,
-    /// Whether it is the caller's, who will destroy it.
+    /// Whether it is the caller's, who destroys it.
     is_borrowed: bool,
 }
 
-// SAFETY: the handle is the driver's, whose functions any thread may call, several at once too.
+// SAFETY: the handle is the driver's. Any thread may call the driver's functions, also at the same
+// time.
 unsafe impl Send for Stream {}
 // SAFETY: as above.
 unsafe impl Sync for Stream {}
 
 impl Stream {
-    /// A stream of its own: nothing on the default stream holds it up.
+    /// Makes a stream that does not wait for the default stream.
     pub fn new(context: &Arc<Context>) -> Result<Stream, Refusal> {
         let gpu = context.bind()?;
         let mut handle = null_mut();
@@ -29,7 +30,7 @@ impl Stream {
         Ok(Stream { context: context.clone(), handle, is_borrowed: false })
     }
 
-    /// The caller's.
+    /// A stream of the caller.
     ///
     /// # Safety
     /// It is a stream of the context, or null, and outlives this.
@@ -42,12 +43,13 @@ impl Stream {
         self.handle
     }
 
-    /// Whether it is the default stream, which nobody can capture.
+    /// Whether it is the default stream, which cannot be captured.
     pub fn is_default(&self) -> bool {
         self.handle.is_null()
     }
 
-    /// Whether work of ours can be captured here: it is not the default stream, and nobody captures it.
+    /// Whether our work can be captured here: it is not the default stream, and no capture is
+    /// running.
     pub fn can_capture(&self, gpu: &Bound) -> Result<bool, Refusal> {
         if self.is_default() {
             return Ok(false);
@@ -71,25 +73,26 @@ impl Drop for Stream {
             return;
         }
         if let Ok(gpu) = self.context.bind() {
-            // SAFETY: made once, destroyed once. A refusal finds nobody to be told.
+            // SAFETY: made once, destroyed once. A refusal cannot be reported.
             let _ = unsafe { (gpu.cuStreamDestroy_v2)(self.handle) };
         }
     }
 }
 
-/// A point in a stream.
+/// An event: a point in a stream.
 pub struct Event {
     context: Arc<Context>,
     handle: CUevent,
 }
 
-// SAFETY: the handle is the driver's, whose functions any thread may call, several at once too.
+// SAFETY: the handle is the driver's. Any thread may call the driver's functions, also at the same
+// time.
 unsafe impl Send for Event {}
 // SAFETY: as above.
 unsafe impl Sync for Event {}
 
 impl Event {
-    /// An event that is not yet in a stream.
+    /// Makes an event that is not yet in a stream.
     pub fn new(context: &Arc<Context>, gpu: &Bound) -> Result<Event, Refusal> {
         let mut handle = null_mut();
         // SAFETY: the driver writes one handle, which is destroyed once.
@@ -97,12 +100,13 @@ impl Event {
         Ok(Event { context: context.clone(), handle })
     }
 
-    /// Puts it behind all work before.
+    /// Puts it after all work before.
     pub fn record(&self, gpu: &Bound, stream: &Stream) -> Result<(), Refusal> {
         self.record_as(gpu, stream, types::CU_EVENT_RECORD_DEFAULT)
     }
 
-    /// The same in a stream that is captured: it is passed whenever the graph is.
+    /// The same in a stream that is being captured: the event is recorded at every launch of the
+    /// graph.
     pub fn record_in_graph(&self, gpu: &Bound, stream: &Stream) -> Result<(), Refusal> {
         self.record_as(gpu, stream, types::CU_EVENT_RECORD_EXTERNAL)
     }
@@ -115,7 +119,7 @@ impl Event {
     /// Waits for it.
     pub fn wait(&self) -> Result<(), Refusal> {
         let gpu = self.context.bind()?;
-        // SAFETY: it lives.
+        // SAFETY: the event lives.
         answer(unsafe { (gpu.cuEventSynchronize)(self.handle) })
     }
 
@@ -132,8 +136,8 @@ impl Event {
 impl Drop for Event {
     fn drop(&mut self) {
         if let Ok(gpu) = self.context.bind() {
-            // SAFETY: made once, destroyed once; the driver keeps what the stream still needs. A refusal finds nobody to
-            // be told.
+            // SAFETY: made once, destroyed once; the driver keeps it as long as the stream needs
+            // it. A refusal cannot be reported.
             let _ = unsafe { (gpu.cuEventDestroy_v2)(self.handle) };
         }
     }

@@ -1,4 +1,5 @@
-//! The driver's types and constants, as far as we call it (CUDA Driver API reference, 11.8; none has changed since 11.4).
+//! The driver's types and constants that we use (CUDA Driver API reference, 11.8; unchanged since
+//! 11.4).
 
 #![allow(non_camel_case_types, reason = "the driver's names")]
 
@@ -38,7 +39,7 @@ pub const CU_STREAM_NON_BLOCKING: u32 = 1;
 pub const CU_JIT_MAX_REGISTERS: CUjit_option = 0;
 pub const CU_JIT_GENERATE_LINE_INFO: CUjit_option = 13;
 
-/// Ours are those of the driver's header, as cudarc has them from it.
+/// Our types and constants are those of the driver's header, as cudarc has them.
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,4 +1,4 @@
-//! What is done at once, what is refused, and the marks.
+//! Replays, refusals and events.
 
 use super::*;
 use crate::device::Buffer;
@@ -40,20 +40,21 @@ impl Memory {
             second: Span::EMPTY,
             crossing: Span::EMPTY,
         };
-        // SAFETY: buffers of this device that outlive the launch; no list, and room for everything that is seen.
+        // SAFETY: buffers of this device that outlive the launch; no list, and capacity for all
+        // counts.
         unsafe { device.launch::<status_frame>(1, &args) }
     }
 }
 
 type Frame = fn(&Device, &mut Memory, &mut Marks, u32) -> Result<(), Error>;
 
-/// Frames one after the other; how many of them were replays.
+/// Runs frames in sequence; returns how many were replays.
 fn replays(frame: Frame) -> u64 {
     let device = engine();
     let (mut memory, mut replay) = (Memory::of(&device), Replay::new(&device, 2).expect("marks"));
     for round in 0..4 {
         let work = |marks: &mut Marks| frame(&device, &mut memory, marks, round);
-        // SAFETY: the memory outlives all of it.
+        // SAFETY: the memory outlives all frames.
         unsafe { replay.run(&device, work) }.expect("a frame");
     }
     device.replays()
@@ -80,7 +81,7 @@ fn what_is_the_same_is_done_at_once_and_nothing_else() {
         // Another mark.
         |_, _, marks, round| marks.pass(round as usize % 2),
     ];
-    // What is done at first is never a replay; an empty frame is what is done before any.
+    // The first frame is never a replay. An empty frame equals the state before the first one.
     assert_eq!(faults.map(replays), [0, 1, 0, 0, 0]);
 }
 
@@ -93,7 +94,7 @@ fn what_does_more_than_launch_is_refused_and_the_next_frame_is_none_the_worse() 
         let error =
             unsafe { replay.run(&device, |_| device.buffer::<u32>(1).map(drop)) }.expect_err("memory");
         assert!(error.to_string().contains("in a frame that only launches"), "{error}");
-        // SAFETY: the memory outlives it.
+        // SAFETY: the memory outlives the frame.
         unsafe { replay.run(&device, |_| memory.launch(&device, 0)) }.expect("a frame");
     }
     assert_eq!(device.replays(), 1);
@@ -116,7 +117,8 @@ fn marks_tell_the_time_between_them() {
     }
 }
 
-/// What other threads do on the device meanwhile is neither refused nor listed, and another device of this thread is not held.
+/// Work of other threads on the device is neither refused nor listed meanwhile. Another device of
+/// this thread is not restricted.
 #[test]
 fn a_thread_is_held_alone_and_on_one_device() {
     let (device, other) = (engine(), engine());
@@ -127,14 +129,14 @@ fn a_thread_is_held_alone_and_on_one_device() {
             std::thread::scope(|scope| {
                 let there = || {
                     let own = Memory::of(&device);
-                    // Something else each time.
+                    // Different work in each round.
                     (0..round).try_for_each(|_| own.launch(&device, 1))
                 };
                 scope.spawn(there).join().expect("no panic")
             })?;
             other.buffer::<u32>(1 + round).map(drop)
         };
-        // SAFETY: what this thread launches on the memory outlives it.
+        // SAFETY: the memory outlives this thread's launches on it.
         unsafe { replay.run(&device, work) }.expect("a frame");
     }
     assert_eq!(device.replays(), 2);

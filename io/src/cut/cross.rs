@@ -1,20 +1,21 @@
-//! Along a line: which edges cross, and the order in which corners are looked at.
+//! Projections on a line: crossing edges, and the order in which corners are tested.
 
 use super::{Point, turn};
 
-/// A line along which edges are short, so that few overlap. What overlaps in the plane overlaps along it if its ends are
-/// `slack` longer.
+/// A line on which the projections of edges are short, so that few overlap. If two edges overlap in
+/// the plane, so do their projections, lengthened by `slack`.
 #[derive(Clone, Copy)]
 pub struct Line {
     from: Point,
     along: Point,
-    /// Twice what two places err by, and more: three roundings each, of at most the sum of both magnitudes.
+    /// More than twice the error of two places: three roundings each, of at most the sum of both
+    /// magnitudes.
     pub slack: f64,
 }
 
 impl Line {
-    /// Of the lines along the axes and the one across most of the edges' length: that along which the edges of a polygon,
-    /// given by its corners in turn, are the shortest part of the whole.
+    /// The best of three lines: both axes, and the one across most of the edges' length. On it the
+    /// polygon's edges cover the smallest multiple of the whole. `corners` are in turn.
     pub fn across(at: &[Point], corners: &[u32]) -> Line {
         let from = at[corners[0] as usize];
         let size =
@@ -24,7 +25,7 @@ impl Line {
             let slack = 16.0 * f64::EPSILON * (along[0].abs() * size[0] + along[1].abs() * size[1]);
             Line { from, along, slack: slack + f64::MIN_POSITIVE }
         };
-        let lines = [line([1.0, 0.0]), line([0.0, 1.0]), line(beside(at, corners, size[0].max(size[1])))];
+        let lines = [line([1.0, 0.0]), line([0.0, 1.0]), line(shortest(at, corners, size[0].max(size[1])))];
         let least = lines
             .map(|line| (line, line.part(at, corners)))
             .into_iter()
@@ -32,12 +33,12 @@ impl Line {
         least.map_or(lines[0], |(line, _)| line)
     }
 
-    /// Where a point lies along the line.
+    /// The coordinate of a point along the line.
     pub fn place(&self, p: Point) -> f64 {
         self.along[0] * (p[0] - self.from[0]) + self.along[1] * (p[1] - self.from[1])
     }
 
-    /// How often the edges cover the whole.
+    /// The sum of the edges' lengths, relative to the whole.
     fn part(&self, at: &[Point], corners: &[u32]) -> f64 {
         let (mut low, mut high, mut sum) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
         let mut before = self.place(at[corners[corners.len() - 1] as usize]);
@@ -50,9 +51,9 @@ impl Line {
     }
 }
 
-/// The direction in which the squares of the edges' lengths sum to the least: at a right angle to the longer axis of
-/// their second moments.
-fn beside(at: &[Point], corners: &[u32], size: f64) -> Point {
+/// The direction with the least sum of squares of the edges' lengths: at a right angle to the
+/// longer axis of their second moments.
+fn shortest(at: &[Point], corners: &[u32], size: f64) -> Point {
     let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
     let mut before = at[corners[corners.len() - 1] as usize];
     for &corner in corners {
@@ -67,7 +68,7 @@ fn beside(at: &[Point], corners: &[u32], size: f64) -> Point {
     if longest > 0.0 { [-y / longest, x / longest] } else { [1.0, 0.0] }
 }
 
-/// The first two edges found that cross, each within the other; ends that touch do not cross.
+/// The first two edges found that cross in their interiors; ends that touch do not cross.
 pub fn crossing(at: &[Point], corners: &[u32]) -> Option<[[u32; 2]; 2]> {
     let line = Line::across(at, corners);
     let next = corners.iter().cycle().skip(1);

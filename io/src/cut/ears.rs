@@ -1,18 +1,19 @@
-//! Ears: corners that can be cut off, one after the other.
+//! Ear cutting: ears are corners that can be cut off, one after the other.
 
 use super::cross::{Line, crossing};
 use super::{Point, ahead, turn};
 
-/// How often all corners are looked at again where none of those beside the last ears can be cut. A polygon that does not
-/// touch itself never needs it.
+/// Number of times that all corners are tested again if no neighbour of the last ears is an ear. A
+/// polygon that does not touch itself never needs it.
 const LOOKS: usize = 16;
-/// In place of the next corner of one that was cut off.
+/// In place of the next corner, for a corner that was cut off.
 const GONE: u32 = u32::MAX;
 
-/// The triangles of a polygon that turns by `sign`, in its corners: n - 2, each turning as the polygon or without area.
-/// None where it crosses itself or no ear is found.
+/// The triangles of a polygon that turns by `sign`, in its corners: n - 2. Each turns as the
+/// polygon, or has no area. `None` if the polygon crosses itself or no ear is found.
 ///
-/// Corners that touch others or edges are fine where ears can be cut (a hole joined by an edge walked twice).
+/// Corners may touch other corners or edges if ears can be cut (a hole joined by an edge walked
+/// twice).
 pub fn cut(at: &[Point], sign: i32) -> Option<Vec<[u32; 3]>> {
     let n = at.len() as u32;
     let mut ears = Ears {
@@ -48,14 +49,15 @@ struct Ears<'a> {
     next: Vec<u32>,
     left: usize,
     line: Line,
-    /// Corners that were not convex before the first ear, in their order along the line. A corner that is convex stays
-    /// so, and where a corner lies in an ear, one of these does.
+    /// Corners that were not convex before the first ear, in their order along the line. A convex
+    /// corner stays convex. If any corner is in an ear, one of these is.
     bent: Vec<u32>,
     triangles: Vec<[u32; 3]>,
 }
 
 impl Ears<'_> {
-    /// Cuts off the corners at which the polygon turns back on itself. A corner that is left.
+    /// Cuts off the corners at which the polygon turns back on itself. Returns a corner that is
+    /// left.
     fn unfold(&mut self) -> u32 {
         let (mut b, mut ahead) = (0, self.left);
         while ahead > 0 && self.left > 3 {
@@ -70,7 +72,7 @@ impl Ears<'_> {
         b
     }
 
-    /// Cuts ears until three corners are left, one of which is given; none where no ear is found.
+    /// Cuts ears until three corners are left, and returns one of these; `None` if no ear is found.
     fn clip(&mut self, mut round: Vec<u32>) -> Option<u32> {
         let mut touched = vec![false; self.at.len()];
         let (mut again, mut looks) = (Vec::new(), 0);
@@ -82,14 +84,14 @@ impl Ears<'_> {
                 self.bent.retain(|&b| self.next[b as usize] != GONE);
             }
             for &b in &round {
-                // Beside an ear: its turn is in the next round, so that ears are spread.
+                // Neighbours of an ear are tested in the next round, so that ears are spread.
                 if self.left == 3 || self.next[b as usize] == GONE || touched[b as usize] || !self.is_ear(b) {
                     continue;
                 }
-                let beside = [self.prev[b as usize], self.next[b as usize]];
+                let neighbours = [self.prev[b as usize], self.next[b as usize]];
                 self.remove(b);
-                alive = beside[0];
-                for x in beside {
+                alive = neighbours[0];
+                for x in neighbours {
                     if !std::mem::replace(&mut touched[x as usize], true) {
                         again.push(x);
                     }
@@ -121,18 +123,18 @@ impl Ears<'_> {
             return false;
         }
         let corners = [a, b, c];
-        let ends = |of: [f64; 3]| (of[0].min(of[1]).min(of[2]), of[0].max(of[1]).max(of[2]));
+        let ends = |x: [f64; 3]| (x[0].min(x[1]).min(x[2]), x[0].max(x[1]).max(x[2]));
         let box_of = [0, 1].map(|k| ends(corners.map(|x| self.at[x as usize][k])));
-        let beside = |p: Point| (0..2).any(|k| p[k] < box_of[k].0 || p[k] > box_of[k].1);
+        let outside = |p: Point| (0..2).any(|k| p[k] < box_of[k].0 || p[k] > box_of[k].1);
         let (low, high) = ends(corners.map(|x| self.place(x)));
         let (low, high) = (low - self.line.slack, high + self.line.slack);
         let from = self.bent.partition_point(|&p| self.place(p) < low);
         let near = self.bent[from..].iter().take_while(|&&p| self.place(p) <= high);
-        !near.copied().any(|p| !beside(self.at[p as usize]) && self.is_within(p, corners))
+        !near.copied().any(|p| !outside(self.at[p as usize]) && self.is_within(p, corners))
     }
 
-    /// Whether corner `p` keeps the triangle from being an ear: it lies in it or on it, or lies on a corner of it and has
-    /// an edge that goes into it.
+    /// Whether corner `p` keeps the triangle from being an ear. It does if it is in or on the
+    /// triangle, or coincides with a corner and has an edge that goes into it.
     fn is_within(&self, p: u32, corners: [u32; 3]) -> bool {
         if self.next[p as usize] == GONE || corners.contains(&p) {
             return false;
@@ -146,11 +148,11 @@ impl Ears<'_> {
                     .any(|q| self.turn(from, left, q) > 0 && self.turn(from, right, q) < 0);
             }
         }
-        // Most are beyond the third edge.
+        // Most corners are beyond the third edge.
         self.turn(c, a, p) >= 0 && self.turn(a, b, p) >= 0 && self.turn(b, c, p) >= 0
     }
 
-    /// Whether the polygon turns back at a corner, or stands there, so that cutting it off takes no area.
+    /// Whether the polygon turns back or stays at a corner, so that cutting it off removes no area.
     fn is_fold(&self, b: u32) -> bool {
         let [a, b, c] = [self.prev[b as usize], b, self.next[b as usize]].map(|x| self.at[x as usize]);
         a == b || b == c || a == c || (ahead(b, a, c) && turn(a, b, c) == 0)
@@ -160,7 +162,7 @@ impl Ears<'_> {
         self.turn(self.prev[b as usize], b, self.next[b as usize]) > 0
     }
 
-    /// 1 where three corners turn as the polygon.
+    /// 1 if three corners turn as the polygon.
     fn turn(&self, a: u32, b: u32, c: u32) -> i32 {
         self.sign * turn(self.at[a as usize], self.at[b as usize], self.at[c as usize])
     }
@@ -178,7 +180,7 @@ impl Ears<'_> {
         self.left -= 1;
     }
 
-    /// Those that are left, in turn.
+    /// The corners that are left, in turn.
     fn corners(&self, start: u32) -> Vec<u32> {
         let follow = |&b: &u32| Some(self.next[b as usize]).filter(|&next| next != start);
         std::iter::successors(Some(start), follow).collect()

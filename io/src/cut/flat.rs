@@ -1,14 +1,14 @@
-//! Polygons that cannot be cut by ears: on a line, there and back, or not flat.
+//! Polygons that have no ears: on a line, there and back, or not flat.
 
 use super::turn;
 use nearmiss_kernels::prim::orient::plane_of;
 
-/// A face lies in a plane if no corner is farther from it than this part of the face's extent.
+/// A face is flat if no corner is farther from its plane than this part of the face's extent.
 const FLAT: f64 = 1e-3;
-/// Nor than this part of its largest coordinate: single precision rounds by 2^-24.
+/// Or than this part of its largest coordinate: single precision rounds by 2^-24.
 const FLAT_ROUNDED: f64 = 1.0 / (1 << 20) as f64;
 
-/// Whether all corners are in a line when seen along an axis, exactly.
+/// Whether the projections of all corners along an axis are collinear, exactly.
 pub fn is_line(points: &[[f64; 3]], axis: usize) -> bool {
     let from = points[0];
     let Some(other) = points.iter().find(|p| **p != from) else { return true };
@@ -16,8 +16,8 @@ pub fn is_line(points: &[[f64; 3]], axis: usize) -> bool {
     points.iter().all(|p| turn([from[i], from[j]], [other[i], other[j]], [p[i], p[j]]) == 0)
 }
 
-/// Whether a walk around the polygon takes each edge there and back, so that nothing is enclosed: what remains of it
-/// when steps that are undone at once are left out is a point.
+/// Whether a walk around the polygon takes each edge there and back, so that it encloses nothing.
+/// Steps that are undone at once are removed; a point must remain.
 pub fn returns(points: &[[f64; 3]]) -> bool {
     let mut walk: Vec<&[f64; 3]> = Vec::with_capacity(points.len());
     for p in points.iter().chain(&points[..1]) {
@@ -30,14 +30,14 @@ pub fn returns(points: &[[f64; 3]]) -> bool {
     walk.len() == 1
 }
 
-/// Whether all corners lie nearly in the plane of three that span it well: the first, the farthest from it, and the one
-/// farthest from their line.
+/// Whether all corners are nearly in the plane of three that span it well. These are the first, the
+/// one farthest from it, and the one farthest from their line.
 pub fn is_flat(points: &[[f64; 3]]) -> bool {
     let largest = points.iter().flatten().fold(0.0f64, |most, x| most.max(x.abs()));
     if largest == 0.0 {
         return true;
     }
-    // Scaled by a power of two, so that nothing overflows or underflows that matters.
+    // Scaled by a power of two: no significant overflow or underflow occurs.
     let scale = f64::from_bits(largest.to_bits() & (0x7ff << 52)).max(f64::MIN_POSITIVE);
     let minus = |p: &[f64; 3]| [0, 1, 2].map(|k| p[k] / scale - points[0][k] / scale);
     let farthest = |size: &dyn Fn([f64; 3]) -> f64| {

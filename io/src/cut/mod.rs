@@ -1,13 +1,16 @@
-//! Polygons to triangles: the fan where it covers the face once, ears where it does not.
+//! Polygons to triangles: the fan if it covers the face once, else ears.
 //!
-//! A face is seen along the axis on which its normal (Newell's, the vector area) is longest. All signs are exact. A cut is
-//! right by what it is made of: a triangle more covers what it covers once, so where every triangle turns as the face
-//! does, each point is covered as often as the face winds around it, and a face that does not cross itself once.
+//! A face is projected along the axis of the largest component of its normal (Newell's, the vector
+//! area). All signs are exact.
+//! A cut is right by its parts: another triangle adds one to the cover of its points. If every
+//! triangle turns as the face does, each point is covered as often as the face winds around it.
+//! That is once, if the face does not cross itself.
 //!
 //! Every edge of a face is an edge of a triangle in any cut. So the fan of a face without area
-//! covers it whole. The fan of a face that crosses itself covers every point that the face winds
-//! around: how often that is, is the sum over the triangles of the fan, so where it is not 0 a
-//! triangle is. It may cover more, where two triangles that turn differently overlap.
+//! covers it whole.
+//! The fan of a face that crosses itself covers every point that the face winds around. The winding
+//! number is the sum over the triangles of the fan: if it is not 0, a triangle covers the point.
+//! The fan may cover more: triangles that turn differently may overlap.
 
 mod cross;
 mod ears;
@@ -24,19 +27,21 @@ use plane::View;
 
 type Point = [f64; 2];
 
-/// Most corners of a face that is cut by ears.
+/// Maximum corners of a face that is cut by ears.
 const MOST_CORNERS: usize = 1 << 17;
 
-/// Cuts every face again of which the fan is wrong, and keeps its corners. As many triangles as
-/// before. Every corner names a position. A face that crosses itself keeps its fan, and is noted by
+/// Cuts every face again whose fan is wrong, and keeps its corners. The number of triangles stays.
+/// Every corner names a position. A face that crosses itself keeps its fan, and is noted by
 /// [`Problem::FaceCrosses`] or [`Problem::FaceFolds`].
 ///
-/// Cost: O(corners) for faces of which the fan is right. Else ears and crossings are looked for among those whose
-/// extent along a line overlaps: O(n log n) for a face that winds little, O(n^2) at worst. Combs, spirals and stars of
-/// 100,000 corners took 8 to 33 s, of 10,000 a hundredth of that; beyond [`MOST_CORNERS`] a face is refused.
+/// Cost: O(corners) for faces whose fan is right. Otherwise ears and crossings are searched among
+/// corners and edges whose extents along a line overlap. That is O(n log n) for a face that winds
+/// little, O(n^2) at worst.
+/// Combs, spirals and stars of 100,000 corners took 8 to 33 s, of 10,000 a hundredth of that.
+/// Beyond [`MOST_CORNERS`] a face is refused.
 ///
 /// # Errors
-/// [`Problem::FaceCorners`], of the first such face.
+/// [`Problem::FaceCorners`], for the first such face.
 pub(super) fn cut(
     positions: &Positions,
     faces: &mut Vec<[u32; 3]>,
@@ -79,17 +84,17 @@ pub(super) fn cut(
     Ok(notes)
 }
 
-/// What is wrong with a polygon, in its corners.
+/// Fault of a polygon, in its corners.
 enum Fault {
     Crosses([[u32; 2]; 2]),
     Folds,
     Long,
 }
 
-/// The triangles of a polygon in its corners; none where its fan is right, or as right as any cut.
+/// The triangles of a polygon in its corners; `None` if its fan is right, or as right as any cut.
 fn polygon(points: &[[f64; 3]]) -> Result<Option<Vec<[u32; 3]>>, Fault> {
     let views = plane::views(points);
-    // On a line, or there and back: nothing is enclosed.
+    // On a line, or there and back: it encloses nothing.
     if views.is_empty() || views.len() > 1 && flat::returns(points) {
         return Ok(None);
     }
@@ -106,7 +111,8 @@ fn polygon(points: &[[f64; 3]]) -> Result<Option<Vec<[u32; 3]>>, Fault> {
     if short { refuse(points, views[0].axis) } else { Err(Fault::Long) }
 }
 
-/// A flat face is at fault. One that is not has no right cut, so the fan is as good as any.
+/// The fault of a flat face. A face that is not flat has no right cut, so its fan is as good as
+/// any.
 fn refuse(points: &[[f64; 3]], axis: usize) -> Result<Option<Vec<[u32; 3]>>, Fault> {
     if !flat::is_flat(points) {
         return Ok(None);
@@ -120,8 +126,9 @@ fn see(points: &[[f64; 3]], axis: usize) -> Vec<Point> {
     points.iter().map(|p| [p[i], p[j]]).collect()
 }
 
-/// Whether the fan around the first corner covers the polygon once: seen from there the others come in the sense of the
-/// polygon, and not more than once around. Convex polygons, and all that the first corner sees whole.
+/// Whether the fan around the first corner covers the polygon once. From there, the other corners
+/// must follow in the sense of the polygon, at most once around. True for convex polygons, and all
+/// that are visible whole from the first corner.
 fn is_fan(at: &[Point], sign: i32) -> bool {
     let from = at[0];
     let mut others = at.iter().copied().filter(|p| *p != from);
@@ -150,7 +157,7 @@ fn turn(a: Point, b: Point, c: Point) -> i32 {
     orient2d_filter(a, b, c, 2).unwrap_or_else(|| orient2d_exact(a, b, c, 2))
 }
 
-/// Of points in a line: whether `a` and `b` lie on one side of `from`, on neither of them.
+/// Whether `a` and `b`, collinear with `from`, are on the same side of it.
 fn ahead(from: Point, a: Point, b: Point) -> bool {
     (0..2).all(|k| a[k].partial_cmp(&from[k]) == b[k].partial_cmp(&from[k]))
 }

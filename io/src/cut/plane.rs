@@ -1,22 +1,22 @@
-//! Along which axis a polygon is seen, and in which sense it turns then.
+//! The axis of a polygon's projection, and the sense in which it then turns.
 
 use super::flat::is_line;
 use nearmiss_kernels::prim::orient::plane_of;
 
-/// The axis that is dropped, and the sign of the area that is seen: 1 is counter-clockwise.
+/// The dropped axis, and the sign of the projected area: 1 is counter-clockwise.
 #[derive(Clone, Copy)]
 pub struct View {
     pub axis: usize,
     pub sign: i32,
 }
 
-/// The views from which a polygon may be cut. One, along the longest component of the vector area, where floats are sure of
-/// its sign. Else both senses along every axis from which it is no line, for the cut to tell which is right; of a polygon on a
-/// line none.
+/// The views from which a polygon may be cut. One, along the longest component of the vector area,
+/// if floats are sure of its sign. Else both senses along every axis from which it is no line: the
+/// cut decides which is right. None for a polygon on a line.
 pub fn views(points: &[[f64; 3]]) -> Vec<View> {
     let (area, error) = rounded(points);
     let mut axes = [0, 1, 2];
-    // Stable: of equal ones the first, so that the choice is the same everywhere.
+    // Stable: of equal axes the first, so that the choice is the same everywhere.
     axes.sort_by(|&a, &b| area[b].abs().total_cmp(&area[a].abs()));
     let longest = axes[0];
     if area[longest].abs() > error[longest] {
@@ -28,8 +28,8 @@ pub fn views(points: &[[f64; 3]]) -> Vec<View> {
         .collect()
 }
 
-/// Twice the vector area, and the most that it errs: five roundings and the sum's on the longest path, doubled; a product
-/// that underflows errs by 2^-1075, and there are 2n.
+/// Twice the vector area, and its maximum error: five roundings and the sum's on the longest path,
+/// doubled. A product that underflows errs by 2^-1075, and there are 2n.
 fn rounded(points: &[[f64; 3]]) -> ([f64; 3], [f64; 3]) {
     let from = points[0];
     let minus = |p: &[f64; 3]| [p[0] - from[0], p[1] - from[1], p[2] - from[2]];

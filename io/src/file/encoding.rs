@@ -1,4 +1,4 @@
-//! Encodings of text, told by the first bytes of a file.
+//! Encodings of text, detected by the first bytes of a file.
 
 use nearmiss::mesh::Problem;
 
@@ -11,7 +11,7 @@ pub(crate) fn utf8(bytes: &[u8]) -> Result<&[u8], Problem> {
         [0xef, 0xbb, 0xbf, rest @ ..] => return Ok(rest),
         [0xff, 0xfe, 0, 0, ..] | [1..=255, 0, 0, 0, ..] => "UTF-32, little-endian",
         [0, 0, 0xfe, 0xff, ..] | [0, 0, 0, 1..=255, ..] => "UTF-32, big-endian",
-        // A NUL beside another byte: a character of ASCII.
+        // A NUL next to another byte: an ASCII character.
         [0xff, 0xfe, ..] | [1..=255, 0, ..] => "UTF-16, little-endian",
         [0xfe, 0xff, ..] | [0, 1..=255, ..] => "UTF-16, big-endian",
         _ => return Ok(bytes),
@@ -19,10 +19,10 @@ pub(crate) fn utf8(bytes: &[u8]) -> Result<&[u8], Problem> {
     Err(Problem::Encoding { found })
 }
 
-/// The text, lines ended by CR alone ended by LF.
+/// The text; lines that end in CR alone end in LF.
 ///
 /// # Errors
-/// Those of [`utf8`], and [`Problem::Unreadable`] for what is not UTF-8.
+/// Errors of [`utf8`], and [`Problem::Unreadable`] for bytes that are not UTF-8.
 pub(crate) fn text(mut bytes: Vec<u8>) -> Result<String, Problem> {
     let mark = bytes.len() - utf8(&bytes)?.len();
     bytes.drain(..mark);

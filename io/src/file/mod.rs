@@ -1,4 +1,4 @@
-//! Files that are read whole: only regular ones, only where there is memory, unpacked where gzip has packed them.
+//! Files, read whole: only regular ones, only if memory suffices, unpacked if gzip has packed them.
 
 pub(crate) mod encoding;
 mod unpack;
@@ -7,12 +7,12 @@ use nearmiss::mesh::Problem;
 use nearmiss::{Error, memory};
 use std::path::Path;
 
-/// The bytes of a file, unpacked if its name ends in `.gz`. Memory is checked before: `multiple`
-/// bytes for each byte of the file, which its reader takes, the file itself included.
+/// The bytes of a file, unpacked if its name ends in `.gz`. Memory is checked first: `multiple`
+/// bytes for each byte of the file, which its reader needs, the file itself included.
 ///
 /// # Errors
-/// [`Error::Input`] with [`Problem::Unreadable`], for a folder, a pipe and a device too, which may never end, or [`Problem::Packed`];
-/// [`Error::OutOfMemory`].
+/// [`Error::Input`] with [`Problem::Unreadable`], also for a folder, a pipe and a device, which may
+/// never end, or [`Problem::Packed`]; [`Error::OutOfMemory`].
 pub fn read(path: &Path, multiple: u64) -> Result<Vec<u8>, Error> {
     let file = path.display().to_string();
     let input = |problem| Error::Input { file: file.clone(), problem };
@@ -22,12 +22,12 @@ pub fn read(path: &Path, multiple: u64) -> Result<Vec<u8>, Error> {
     if is_packed(path) { unpack::unpack(&file, &bytes, multiple) } else { Ok(bytes) }
 }
 
-/// A file's text, as [`read`] its bytes: without a byte order mark, its lines ended by LF or CR LF,
-/// also if the file ends them by CR.
+/// A file's text, without a byte order mark. Lines end in LF or CR LF, even if the file ends them
+/// by CR. The bytes are those of [`read`].
 ///
 /// # Errors
-/// Those of [`read`], [`Problem::Encoding`] for UTF-16 and UTF-32, and [`Problem::Unreadable`] for
-/// all else that is not UTF-8.
+/// Errors of [`read`], [`Problem::Encoding`] for UTF-16 and UTF-32, and [`Problem::Unreadable`] for
+/// anything else that is not UTF-8.
 pub fn text(path: &Path, multiple: u64) -> Result<String, Error> {
     let input = |problem| Error::Input { file: path.display().to_string(), problem };
     encoding::text(read(path, multiple)?).map_err(input)

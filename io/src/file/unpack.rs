@@ -1,15 +1,15 @@
-//! What gzip has packed.
+//! Unpacking of gzip files.
 
 use flate2::bufread::MultiGzDecoder;
 use nearmiss::mesh::Problem;
 use nearmiss::{Error, memory};
 use std::io::Read;
 
-/// The first piece that is unpacked; each next one is as long as all before it. Bytes.
+/// Bytes of the first piece; each later piece is as long as all before it.
 const PIECE: u64 = 1 << 20;
 
-/// The bytes of a packed file. A file of a megabyte may unpack to a gigabyte: before each piece memory is asked for, `multiple` bytes
-/// for each that there then are.
+/// The bytes of a packed file. A file of a megabyte may unpack to a gigabyte. So memory is checked
+/// before each piece: `multiple` bytes for each byte unpacked by then.
 ///
 /// # Errors
 /// [`Error::Input`] with [`Problem::Packed`] for damaged data; [`Error::OutOfMemory`].
@@ -77,7 +77,7 @@ mod tests {
         assert!(unpack("a.gz", &[&good[..], b"more"].concat(), 8).is_err());
     }
 
-    /// A bomb: it ends where memory does, with little of it unpacked.
+    /// A bomb is refused when memory ends, with little of it unpacked.
     #[test]
     fn a_bomb_is_refused() {
         let bomb = packed(&vec![0; 64 << 20]);

@@ -1,4 +1,4 @@
-//! OBJ files to positions and faces: the keywords `v` and `f`. All others are counted or known to
+//! OBJ files to positions and faces: the keywords `v` and `f`. All others are counted, or known to
 //! hold neither.
 
 mod word;
@@ -21,10 +21,10 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Parsed, Problem> {
         if joined.is_empty() {
             first = i + 1;
         } else if let Some(word @ (b"v" | b"f")) = words(line).next() {
-            // No argument is called so: a vertex or a face would be lost.
+            // No argument has that form: a vertex or a face would be lost.
             return Err(ObjProblem::Joined { line: i, found: shown(word) }.into());
         }
-        // A comment that ends in a backslash, say a path, must not swallow the next line.
+        // A comment that ends in a backslash, such as a path, does not continue on the next line.
         if let Some(part) = line.strip_suffix(b"\\").filter(|part| !part.contains(&b'#')) {
             joined.extend_from_slice(part);
             joined.push(b' ');
@@ -66,7 +66,7 @@ struct Obj {
     points: Vec<[f64; 3]>,
     faces: Fans,
     notes: Notes,
-    /// The line and the index of the largest reference to a vertex that had not come yet.
+    /// The line and the index of the largest reference to a vertex that is not defined yet.
     ahead: Option<(usize, i64)>,
 }
 
@@ -127,12 +127,12 @@ impl Obj {
         Ok(())
     }
 
-    /// The vertex of a corner, from 0.
+    /// The vertex of a corner, counted from 0.
     fn corner(&mut self, line: usize, word: &[u8]) -> Result<u32, ObjProblem> {
         let wrong = || ObjProblem::Corner { line, found: shown(word) };
         let mut parts = word.split(|&b| b == b'/');
         let index: i64 = parts.next().and_then(parse).ok_or_else(wrong)?;
-        // Texture and normal are not used, but must be what they claim.
+        // Texture and normal are not used, but must be valid.
         let fine = |part: &[u8]| part.is_empty() || parse::<i64>(part).is_some();
         if !parts.by_ref().take(2).all(fine) || parts.next().is_some() {
             return Err(wrong());
@@ -169,7 +169,7 @@ impl Obj {
     }
 }
 
-/// Most numbers after the three of a vertex: a weight, and a colour of three.
+/// Maximum count of numbers after the three of a vertex: a weight, and a colour of three.
 const MOST_AFTER: usize = 4;
 
 fn parse<T: std::str::FromStr>(word: &[u8]) -> Option<T> {

@@ -1,25 +1,24 @@
-//! The first words of the lines of an OBJ file: those of the specification (version 3.0, with what
-//! it supersedes), and others.
+//! The first words of the lines of an OBJ file: those of the specification (version 3.0, with
+//! superseded ones), and others.
 
-/// What a reader of triangles does with a line.
+/// Treatment of a line by a reader of triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Word {
     Vertex,
     Face,
-    /// It neither holds nor makes a surface: names, materials, texture coordinates, normals,
-    /// display.
+    /// Without a surface, and makes none: names, materials, texture coordinates, normals, display.
     Quiet,
-    /// It holds or makes geometry that is no face: points, lines, curves, surfaces, another file.
+    /// With geometry that is not a face: points, lines, curves, surfaces, another file.
     Element,
-    /// No word of the specification, but near enough to `v` or `f` that a vertex or a face may be
-    /// lost with it.
+    /// No word of the specification, but similar to `v` or `f`: a vertex or a face may be lost with
+    /// it.
     Misspelt,
     Unknown,
 }
 
-/// Statements without geometry, by the chapters of the specification: vertex data, attributes of
-/// free-form curves and surfaces, the parts of one, connectivity, grouping, display, and superseded
-/// ones.
+/// Statements without geometry, by the chapters of the specification. These are vertex data,
+/// attributes and parts of free-form curves and surfaces, connectivity, grouping, display, and
+/// superseded ones.
 const QUIET: [&[u8]; 32] = [
     b"vt",
     b"vn",
@@ -55,15 +54,15 @@ const QUIET: [&[u8]; 32] = [
     b"res",
 ];
 
-/// Statements with geometry that is not read; `call` and `csh` bring what another file or program
-/// gives.
+/// Statements with geometry that is not read; `call` and `csh` insert the output of another file or
+/// program.
 const ELEMENTS: [&[u8]; 10] = [b"p", b"l", b"curv", b"surf", b"bsp", b"bzp", b"cdc", b"cdp", b"call", b"csh"];
 
 impl Word {
     pub fn of(word: &[u8]) -> Word {
         match word {
             b"v" => Word::Vertex,
-            // `fo` is how versions before 3.0 called a face.
+            // Versions before 3.0 had `fo` for a face.
             b"f" | b"fo" => Word::Face,
             _ if QUIET.contains(&word) => Word::Quiet,
             _ if ELEMENTS.contains(&word) => Word::Element,
@@ -73,8 +72,8 @@ impl Word {
     }
 }
 
-/// Whether the only letter of a word is `v` or `f`, in either case: `V`, `v:`, `v1.0`, a mark or a
-/// space of Unicode before it.
+/// Whether the only letter of a word is `v` or `f`, in either case: `V`, `v:`, `v1.0`, also after a
+/// Unicode mark or space.
 fn is_nearly(word: &[u8]) -> bool {
     let text = String::from_utf8_lossy(word);
     let mut letters = text.chars().filter(|c| c.is_alphabetic());

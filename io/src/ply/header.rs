@@ -1,11 +1,12 @@
-//! The header of a PLY file: elements, their counts and their properties, borrowed from the bytes of the file.
+//! The header of a PLY file: elements, their counts and their properties, borrowed from the bytes
+//! of the file.
 
 use super::source::Scalar;
 use crate::shown::shown;
 use nearmiss::mesh::PlyProblem;
 use std::collections::HashSet;
 
-/// How the body is written.
+/// Encoding of the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Encoding {
     Ascii,
@@ -37,12 +38,13 @@ pub(super) struct Element<'a> {
 pub(super) struct Header<'a> {
     pub encoding: Encoding,
     pub elements: Vec<Element<'a>>,
-    /// Where the body begins.
+    /// Offset of the body.
     pub size: usize,
 }
 
 impl<'a> Header<'a> {
-    /// Reads up to and including the line `end_header`. Lines end in LF, CR LF, or CR if the first one does.
+    /// Reads up to and including the line `end_header`. Lines end in LF, CR LF, or CR if the first
+    /// one does.
     pub fn read(bytes: &'a [u8]) -> Result<Header<'a>, PlyProblem> {
         let mut lines = Lines::new(bytes);
         let first = lines.next().unwrap_or(bytes);
@@ -158,7 +160,7 @@ fn property(line: usize, text: &str) -> Result<Property<'_>, PlyProblem> {
     }
 }
 
-/// Whether `name` is one of the two names under which files keep the corners of a face.
+/// Whether `name` is one of the two names for the corners of a face.
 pub(super) fn is_corners(name: &str) -> bool {
     matches!(name, "vertex_indices" | "vertex_index")
 }
@@ -178,7 +180,7 @@ impl<'a> Lines<'a> {
         Lines { bytes, end: if lone_cr { b'\r' } else { b'\n' }, at: 0, read: 0 }
     }
 
-    /// The next line, trimmed at its end; `None` where no line end follows.
+    /// The next line, trimmed at its end; `None` if no line end follows.
     fn next(&mut self) -> Option<&'a [u8]> {
         let rest = &self.bytes[self.at..];
         let length = rest.iter().position(|&b| b == self.end)?;

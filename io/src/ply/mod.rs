@@ -1,4 +1,4 @@
-//! PLY files: `header`, then the body through `source` in `read`; `write` is the way back.
+//! PLY files. Reading: `header`, then the body through `source` in `read`. Writing: `write`.
 
 mod header;
 pub(crate) mod read;

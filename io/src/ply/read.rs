@@ -1,7 +1,7 @@
 //! PLY files to positions and faces.
 //!
-//! We have our own reader because the crates there are either allocate by the counts in the header, which a damaged
-//! file may have at any size, or lose the number of the element at fault.
+//! This is our own reader. Other crates allocate by the counts in the header, which a damaged file
+//! may have at any size, or lose the number of the bad element.
 
 use super::header::{Element, Encoding, Header, Kind, Property, is_corners};
 use super::source::{Failure, Scalar, Source, Value};
@@ -11,8 +11,7 @@ use crate::polygons::Fans;
 use crate::shown::shown;
 use nearmiss::mesh::{MAX_FACES, MAX_VERTICES, PlyProblem, Positions, Problem};
 
-/// Elements without surfaces, as scanners and modellers write them: they are skipped without a
-/// note.
+/// Elements without surfaces that scanners and modellers write; they are skipped without a note.
 const QUIET: [&str; 5] = ["edge", "material", "camera", "user", "range_grid"];
 
 /// Reads the whole file; faces keep the file's order.
@@ -46,7 +45,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Parsed, Problem> {
     }
 }
 
-/// Refuses a count that the rest of the file cannot hold, so that it may be allocated.
+/// Refuses a count that exceeds the rest of the file, so that its elements may be allocated.
 fn promise(element: &Element<'_>, source: &Source<'_>) -> Result<(), PlyProblem> {
     let least = |p: &Property<'_>| match p.kind {
         Kind::One(scalar) | Kind::List { length: scalar, .. } => u128::from(source.least(scalar)),
@@ -97,7 +96,7 @@ fn coordinates<T: Copy + Default>(
     Ok(points)
 }
 
-/// Exact: used only where every column fits (`Scalar::fits_f32`).
+/// Exact: used only if every column fits (`Scalar::fits_f32`).
 fn to_f32(value: Value) -> f32 {
     match value {
         Value::Int(i) => i as f32,
@@ -161,13 +160,13 @@ fn polygons(
     Ok(faces)
 }
 
-/// Refuses more than a mesh may have, before there is a mesh.
+/// Refuses a count that exceeds a mesh's limit, before there is a mesh.
 fn within(what: &'static str, count: u64, limit: usize) -> Result<(), Problem> {
     let limit = limit as u64;
     if count > limit { Err(Problem::TooMany { what, count, limit }) } else { Ok(()) }
 }
 
-/// Which part of a property a value is.
+/// The part of a property that a value is.
 #[derive(Clone, Copy)]
 enum Item {
     Only,
@@ -175,7 +174,8 @@ enum Item {
     At(u64),
 }
 
-/// Reads all entries of an element, giving `each` the entry, the property's column, the part and the value.
+/// Reads all entries of an element; `each` gets the entry, the property's column, the part and the
+/// value.
 fn entries(
     element: &Element<'_>,
     source: &mut Source<'_>,
@@ -205,7 +205,7 @@ fn entries(
     Ok(())
 }
 
-/// Where in the file a value stands, for messages.
+/// The place of a value in the file, for messages.
 struct Place<'a> {
     element: &'a Element<'a>,
     index: u64,
@@ -230,7 +230,7 @@ impl Place<'_> {
         })
     }
 
-    /// The length of a list, refused if the rest of the file cannot hold its items.
+    /// The length of a list; refused if its items exceed the rest of the file.
     fn length(&self, source: &mut Source<'_>, length: Scalar, item: Scalar) -> Result<u64, PlyProblem> {
         let Value::Int(found) = self.next(source, length)? else { return Ok(0) }; // the header admits no other type
         let Ok(length) = u64::try_from(found) else {

@@ -1,4 +1,4 @@
-//! The scalars of a PLY body: one reader a type and an encoding, none of which allocates.
+//! The scalars of a PLY body: one reader for each type and encoding; none allocates.
 
 use super::header::Encoding;
 
@@ -70,7 +70,8 @@ impl Scalar {
         !matches!(self, Scalar::I32 | Scalar::U32 | Scalar::F64)
     }
 
-    /// The value of an ascii token, rounded to the declared type as the format demands; `None` if it is none.
+    /// The value of an ascii token, rounded to the declared type as the format demands; `None` if
+    /// it is not one.
     fn parse(self, token: &[u8]) -> Option<Value> {
         let text = std::str::from_utf8(token).ok()?;
         let int = |low: i64, high: i64| {
@@ -103,7 +104,7 @@ impl Scalar {
     }
 }
 
-/// Why a scalar could not be read.
+/// Reasons why a scalar could not be read.
 pub(super) enum Failure<'a> {
     /// The file ends.
     End,
@@ -129,12 +130,12 @@ impl<'a> Source<'a> {
         self.rest.len()
     }
 
-    /// The fewest bytes that a scalar takes: in ascii a digit and what parts it from the next.
+    /// Minimum bytes of a scalar: in ascii a digit and a separator.
     pub fn least(&self, scalar: Scalar) -> u64 {
         if self.encoding == Encoding::Ascii { 2 } else { scalar.size() as u64 }
     }
 
-    /// Whether `need` bytes can be there; the last token of an ascii file needs no line end.
+    /// Whether `need` bytes can be left; the last token of an ascii file needs no line end.
     pub fn holds(&self, need: u128) -> bool {
         let spare = u128::from(self.encoding == Encoding::Ascii);
         need <= self.rest.len() as u128 + spare
@@ -160,14 +161,14 @@ impl<'a> Source<'a> {
         Ok(scalar.decode(bytes))
     }
 
-    /// Goes to the next line that has something on it (ascii).
+    /// Moves to the next line that is not empty (ascii).
     pub fn begin_entry(&mut self) {
         if self.encoding == Encoding::Ascii {
             self.rest = self.rest.trim_ascii_start();
         }
     }
 
-    /// What is left on the line: empty, or one token too many (ascii).
+    /// The rest of the line: empty, or one token too many (ascii).
     pub fn end_entry(&mut self) -> &'a [u8] {
         if self.encoding == Encoding::Ascii { self.token() } else { &[] }
     }

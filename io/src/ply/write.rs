@@ -5,12 +5,12 @@ use nearmiss::mesh::{Mesh, Positions};
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-/// Writes a mesh as binary little-endian PLY, floats or doubles as they are;
-/// [`MeshFile::read`](crate::MeshFile::read) gives equal vertices and triangles back, bit by bit.
+/// Writes a mesh as binary little-endian PLY, floats or doubles as they are.
+/// [`MeshFile::read`](crate::MeshFile::read) returns equal vertices and triangles, bit by bit.
 /// Replaces the file.
 ///
 /// # Errors
-/// [`Error::Output`] with the operating system's words.
+/// [`Error::Output`] with the operating system's text.
 pub fn write_ply(mesh: &Mesh, path: &Path) -> Result<(), Error> {
     let write = || {
         let mut out = BufWriter::new(std::fs::File::create(path)?);
@@ -24,27 +24,30 @@ pub fn write_ply(mesh: &Mesh, path: &Path) -> Result<(), Error> {
     })
 }
 
-/// Writes the bytes of such a file to `out`, in small pieces: give a buffered writer.
+/// Writes the bytes of such a file to `out`, in small pieces: pass a buffered writer.
 ///
 /// # Errors
-/// Those of `out`.
+/// Errors of `out`.
 pub fn encode_ply(mesh: &Mesh, out: &mut impl Write) -> std::io::Result<()> {
     encode(mesh, out, |_| None)
 }
 
-/// The same with a colour a triangle: `red`, `green` and `blue` of the element `face`, as viewers of PLY know them.
+/// The same with one colour per triangle: `red`, `green` and `blue` of the element `face`, as PLY
+/// viewers read them.
 ///
 /// # Errors
-/// [`std::io::ErrorKind::InvalidInput`] unless there are as many colours as triangles; those of `out`.
+/// [`std::io::ErrorKind::InvalidInput`] unless there are as many colours as triangles; errors of
+/// `out`.
 pub fn encode_ply_coloured(mesh: &Mesh, out: &mut impl Write, colours: &[[u8; 3]]) -> std::io::Result<()> {
     if colours.len() != mesh.face_count() {
-        let text = format!("{} colours for {} triangles: give one each", colours.len(), mesh.face_count());
+        let text =
+            format!("one colour per triangle is needed, got {} for {}", colours.len(), mesh.face_count());
         return Err(std::io::Error::new(std::io::ErrorKind::InvalidInput, text));
     }
     encode(mesh, out, |face| Some(colours[face]))
 }
 
-/// Writes the header, the points and the faces, each with its colour if it has one: all have, or none.
+/// Writes the header, the points and the faces, each with its colour. Either all have one, or none.
 fn encode(
     mesh: &Mesh,
     out: &mut impl Write,

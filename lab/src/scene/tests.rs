@@ -57,7 +57,7 @@ fn scenes_have_about_as_many_triangles_as_asked() {
 #[test]
 fn what_cannot_be_made_is_refused_before_it_is_tried() {
     let text = |name: &str, triangles: usize| scene(name, triangles, 0).unwrap_err().to_string();
-    assert!(text("cloth", 10).starts_with("cloth: is no scene; known are: balls, cloth-ball, draped"));
+    assert!(text("cloth", 10).starts_with("cloth: is not a scene; known are: balls, cloth-ball, draped"));
     for name in FORMULAS {
         assert!(text(name, 0).contains("no triangles"));
         if name != "single" {

@@ -28,21 +28,21 @@ fn a_fault_in_an_answer_is_named() {
         plant(&mut found);
         truth.fault(Some(&found)).expect_err("a fault")
     };
-    assert!(truth.fault(None).expect_err("a fault").contains("where the least is"));
-    assert!(with(&|n| n.distance = 0.0).starts_with("0, or not"));
+    assert!(truth.fault(None).expect_err("a fault").contains("but the least is"));
+    assert!(with(&|n| n.distance = 0.0).starts_with("a wrong zero"));
     assert!(with(&|n| n.distance *= 1.0 + 1e-9).starts_with("a distance"));
     assert!(with(&|n| n.distance *= 1.0 - 1e-9).starts_with("a distance"));
     let other = (found.triangles[0] + 1) % 30;
     assert!(with(&|n| n.triangles[0] = other).starts_with("the distance is not that of the triangles"));
     assert!(with(&|n| n.bodies.swap(0, 1)).starts_with("the "));
     assert!(with(&|n| n.weights[1][0] += 0.5).starts_with("weights"));
-    assert!(with(&|n| n.points[0][1] += 1e-6).starts_with("points beside"));
+    assert!(with(&|n| n.points[0][1] += 1e-6).starts_with("points that differ"));
     let meeting = vec![apart(1, 0.0), apart(2, 0.0)];
     let truth = Truth::of(&meeting, |_, _| true);
     let found = *ask(engine(), meeting, Query::distance()).nearest().expect("two bodies");
     assert_eq!((truth.fault(Some(&found)), found.distance), (Ok(()), 0.0));
     let tiny = NearestTriangles { distance: f64::from_bits(1), ..found };
-    assert!(truth.fault(Some(&tiny)).expect_err("a fault").starts_with("0, or not"));
+    assert!(truth.fault(Some(&tiny)).expect_err("a fault").starts_with("a wrong zero"));
     let none = Truth::of(&bodies, |_, _| false);
     assert!(none.fault(Some(&found)).is_err() && none.fault(None).is_ok());
 }

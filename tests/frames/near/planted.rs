@@ -46,7 +46,7 @@ fn a_fault_in_a_frame_is_named() {
     }
     // One that is farther apart than asked.
     let far = ask(engine(), bodies.clone(), Query::near(2.0 * DISTANCE)).near().to_vec();
-    assert!(truth.fault(&far).expect_err("a fault").ends_with("farther than asked"));
+    assert!(truth.fault(&far).expect_err("a fault").ends_with("farther than the query's distance"));
 }
 
 #[test]
@@ -59,8 +59,11 @@ fn a_fault_in_one_answer_is_named() {
     assert_eq!(fault(Some(said), 0.75), None);
     assert_eq!(fault(None, 0.75).as_deref(), Some("missed"));
     assert_eq!(fault(None, 0.69), None);
-    assert_eq!(fault(Some(said), 0.69).as_deref(), Some("certain of what is not so"));
-    assert_eq!(fault(Some(Near { certain: false, ..said }), 0.69).as_deref(), Some("farther than asked"));
+    assert_eq!(fault(Some(said), 0.69).as_deref(), Some("a false certainty"));
+    assert_eq!(
+        fault(Some(Near { certain: false, ..said }), 0.69).as_deref(),
+        Some("farther than the query's distance")
+    );
     let other = Near { squared: said.squared + 1e-12, ..said };
     assert!(fault(Some(other), 0.75).is_some_and(|fault| fault.starts_with("squared distance")));
     for at in [[0.3, 0.21], [-0.1, 0.2], [f64::EPSILON, 0.2], [0.6, 0.6]] {

@@ -304,7 +304,7 @@ fn plain_accesses_between_blocks_are_races_in_every_order() {
 
 #[test]
 fn a_wait_for_a_block_that_has_not_started_is_named() {
-    let named = "kernel waits_for_a_block: a wait for what nobody does at block 0, phase 0, lane 0";
+    let named = "kernel waits_for_a_block: an endless wait at block 0, phase 0, lane 0";
     let forward = verdict::<waits_for_a_block>(Order::Forward, None, 3);
     assert!(forward.contains(named), "{forward}");
     // Where all three run at once, or block 0 comes last, the wait ends: both hide it.
@@ -317,14 +317,14 @@ fn a_wait_of_all_that_run_for_one_that_cannot_start_is_named() {
     // As many blocks as run at once, and one more.
     assert!(verdict::<all_wait_for_the_last>(Order::Forward, Some(2), 64).contains("nothing seen"));
     let verdict = verdict::<all_wait_for_the_last>(Order::Forward, Some(2), 65);
-    assert!(verdict.contains("kernel all_wait_for_the_last: a wait for what nobody does"), "{verdict}");
+    assert!(verdict.contains("kernel all_wait_for_the_last: an endless wait"), "{verdict}");
 }
 
 #[test]
 fn a_wait_for_a_lane_of_the_same_block_is_named() {
     for seed in [None, Some(1)] {
         let verdict = verdict::<waits_for_a_lane>(Order::Forward, seed, 2);
-        assert!(verdict.contains("kernel waits_for_a_lane: a wait for what nobody does"), "{verdict}");
+        assert!(verdict.contains("kernel waits_for_a_lane: an endless wait"), "{verdict}");
     }
     // The other way round the lanes' order hides it.
     assert!(verdict::<waits_for_a_lane>(Order::Reverse, None, 1).contains("nothing seen"));

@@ -268,8 +268,8 @@ fn lies_are_named() {
             |v| Verdict { toi: 0.0, toi_upper: v.toi * 0.5, ..v },
             "a false certificate: the contact is after toi_upper",
         ),
-        (|v| Verdict { toi: f64::NAN, ..v }, "times that are none"),
-        (|v| Verdict { toi_upper: 0.0, ..v }, "times that are none"),
+        (|v| Verdict { toi: f64::NAN, ..v }, "times out of range"),
+        (|v| Verdict { toi_upper: 0.0, ..v }, "times out of range"),
     ];
     let all: Vec<Built> = contacts(25, 5).filter(|(_, toi)| *toi == 0.5).map(|(built, _)| built).collect();
     for (lie, named) in lies {

@@ -1,9 +1,9 @@
-//! Queries by the names of kinds and solvers, for tests that go through many.
+//! Queries by the names of kinds and solvers, for tests of many.
 
 use nearmiss::Query;
 use nearmiss::query::{Certified, Continuous, ContinuousSolver, Earliest, QueryKind, Solver};
 
-/// The query of that kind with all choices at their defaults; a near one has none for its distance.
+/// The query of a kind with all choices at their defaults. A near query has no default distance.
 pub fn of(kind: QueryKind) -> Query {
     match kind {
         QueryKind::Discrete => Query::discrete(),
@@ -14,7 +14,8 @@ pub fn of(kind: QueryKind) -> Query {
     }
 }
 
-/// The query of that kind, with that tolerance if its solver takes one, and of a near one that distance.
+/// The query of a kind: with `tolerance` if its solver takes one, with `distance` if it is a near
+/// query.
 pub fn at(kind: QueryKind, tolerance: f64, distance: f64) -> Query {
     match kind {
         QueryKind::Near => Query::near(distance),
@@ -22,7 +23,7 @@ pub fn at(kind: QueryKind, tolerance: f64, distance: f64) -> Query {
     }
 }
 
-/// The query of that kind by that solver of features in motion.
+/// The query of a kind by a solver of features in motion.
 pub fn by(kind: QueryKind, solver: Solver) -> Query {
     let solver = ContinuousSolver::named(solver).expect("a solver of features in motion");
     match kind {
@@ -38,7 +39,7 @@ pub fn certified(mut query: Query, change: impl FnOnce(&mut Certified)) -> Query
     query
 }
 
-/// The query with that tolerance, where its solver takes one.
+/// The query with that tolerance, if its solver takes one.
 pub fn with_tolerance(mut query: Query, tolerance: f64) -> Query {
     if let Some(certified) = query.certified_mut() {
         certified.tolerance = Some(tolerance);

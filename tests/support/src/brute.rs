@@ -1,4 +1,5 @@
-//! Pairs of features asked one by one, and what is wrong with a frame's answer beside theirs.
+//! Brute force: all pairs of features, tested one by one, and the judge of a frame's answer by
+//! them.
 
 use nearmiss::contacts::{Contact, Kind, Status};
 use nearmiss::mesh::{Body, Topology};
@@ -12,7 +13,7 @@ use std::collections::BTreeMap;
 /// The certified solvers.
 pub const SOLVERS: [Solver; 3] = [Solver::Certified, Solver::CertifiedF32, Solver::CertifiedF64];
 
-/// A pair as it is listed: its kind, the bodies of both features, and the features.
+/// A pair as in a list: its kind, the bodies of both features, and the features.
 pub type Row = (Kind, [usize; 2], [u32; 2]);
 
 /// The row of a contact.
@@ -20,7 +21,7 @@ pub fn row(c: &Contact) -> Row {
     (c.kind, c.bodies.map(|body| body.index()), [c.feature_a, c.feature_b])
 }
 
-/// A body as the brute force sees it. Its vertices are doubles: exact, and what the cubic in f64 works with.
+/// A body for the brute force. Its vertices are doubles: exact, and the input of the cubic in f64.
 pub struct Seen {
     pub vertices: Vec<Moving<f64>>,
     pub used: Vec<u32>,
@@ -42,12 +43,12 @@ impl Seen {
             edges: Topology::new(body.faces(), body.vertex_count()).edges,
         }
     }
-    pub fn at<const N: usize>(&self, of: [u32; N]) -> [Moving<f64>; N] {
-        of.map(|v| self.vertices[v as usize])
+    pub fn at<const N: usize>(&self, vertices: [u32; N]) -> [Moving<f64>; N] {
+        vertices.map(|v| self.vertices[v as usize])
     }
 }
 
-/// The rungs that a certified solver climbs.
+/// The rungs of a certified solver.
 pub fn rungs(solver: Solver) -> Rungs {
     match solver {
         Solver::CertifiedF32 => Rungs::Single,
@@ -56,7 +57,7 @@ pub fn rungs(solver: Solver) -> Rungs {
     }
 }
 
-/// What the solver says of a pair by itself.
+/// The solver's verdict on one pair.
 pub fn verdict(solver: Solver, kind: Kind, [a, b, c, d]: [Moving<f64>; 4], p: &Params) -> Verdict {
     if kind == Kind::Ee {
         ee_certified([a, b], [c, d], rungs(solver), p)
@@ -65,7 +66,8 @@ pub fn verdict(solver: Solver, kind: Kind, [a, b, c, d]: [Moving<f64>; 4], p: &P
     }
 }
 
-/// What is wrong with an answer: every pair that is not certainly apart is listed, as it is by itself, and no other.
+/// The fault of an answer, if it has one. An answer lists every pair that is not certainly apart,
+/// with its verdict, and no other.
 pub fn fault(found: &[Contact], near: &BTreeMap<Row, Verdict>, meet: &[Row]) -> Option<String> {
     let mut listed = BTreeMap::new();
     for c in found {

@@ -1,4 +1,5 @@
-//! Pairs of features of the public meshes whose boxes meet, found without a kernel, and what is known of them.
+//! Pairs of features of the public meshes whose boxes overlap, found without a kernel, and their
+//! known contacts.
 #![allow(clippy::unwrap_used, reason = "public data are as they were published")]
 
 use crate::data;
@@ -20,14 +21,14 @@ pub fn table(path: PathBuf) -> Vec<csv::StringRecord> {
         .collect()
 }
 
-/// A mesh as the public data have it, read by no reader of ours.
+/// A mesh of the public data, read without our readers.
 pub struct Mesh {
     pub x: Vec<Vec3<f32>>,
     pub faces: Vec<[u32; 3]>,
 }
 
 impl Mesh {
-    /// Binary PLY of `float x y z` and `list uchar int`, which is what the data are.
+    /// Reads binary PLY of `float x y z` and `list uchar int`, the format of the data.
     pub fn read(path: PathBuf) -> Mesh {
         let mut all = Vec::new();
         std::fs::File::open(path).unwrap().read_to_end(&mut all).unwrap();
@@ -70,7 +71,7 @@ pub fn bounds(points: &[Vec3<f32>]) -> Bounds {
     points.iter().fold((points[0], points[0]), |(l, h), p| (l.min(*p), h.max(*p)))
 }
 
-/// All pairs of boxes that meet, by sorting along x.
+/// Visits all pairs of boxes that overlap, by sorting along x.
 pub fn overlaps(a: &[Bounds], b: &[Bounds], mut visit: impl FnMut(usize, usize)) {
     let mut all: Vec<(f32, bool, usize)> = Vec::new();
     all.extend(a.iter().enumerate().map(|(i, x)| (x.0[0], false, i)));
@@ -111,8 +112,8 @@ pub fn truths(path: PathBuf) -> HashSet<Key> {
     rows.iter().skip(1).map(|r| (&r[0] == "vf", r[1].parse().unwrap(), r[2].parse().unwrap())).collect()
 }
 
-/// Visits all pairs without a common vertex whose swept boxes meet: vertex/face (true), then edge/edge; both indices
-/// and the four points.
+/// Visits all pairs without a common vertex whose swept boxes overlap: vertex/face (true), then
+/// edge/edge; both indices and the four points.
 pub fn candidates_of(m: &Mesh, n: &Mesh, mut visit: impl FnMut(bool, usize, usize, [Moving<f32>; 4])) {
     let at = |k: u32| Moving { t0: m.x[k as usize], t1: n.x[k as usize] };
     let swept = |v: &[u32]| bounds(&v.iter().flat_map(|k| [at(*k).t0, at(*k).t1]).collect::<Vec<_>>());

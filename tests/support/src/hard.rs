@@ -1,12 +1,13 @@
-//! Small scenes on which a search for the first contact takes its time: nothing tells their features apart, or where they
-//! meet. Each once took seconds or minutes; what is quadratic in them is their answer. Shared with `benches/stages.rs`.
+//! Small scenes with a slow search for the first contact: no test separates their features, or
+//! finds the place of contact. Each once took seconds or minutes; only their answer is quadratic.
+//! Shared with `benches/stages.rs`.
 
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss_lab::scene::Rng;
 
 type Corner = [f64; 3];
 
-/// A body of triangles that share no vertex, given at both ends of the step.
+/// A body of triangles that share no vertex, by its positions at both ends of the step.
 fn loose(name: &str, triangles: &[[[Corner; 3]; 2]]) -> Body {
     let faces: Vec<_> = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let mesh = |t: usize| {
@@ -16,7 +17,7 @@ fn loose(name: &str, triangles: &[[[Corner; 3]; 2]]) -> Body {
     Body::moving(mesh(0), mesh(1)).expect("two frames")
 }
 
-/// A number from -1 to 1, of 10 bits: sums of few are exact in f32.
+/// A number from -1 to 1, of 10 bits: sums of a few are exact in f32.
 fn number(rng: &mut Rng) -> f64 {
     ((rng.bits() & 1023) as f64 - 512.0) / 512.0
 }
@@ -26,12 +27,12 @@ fn moved(corners: [Corner; 3], by: Corner) -> [[Corner; 3]; 2] {
     [corners, corners.map(|p| [0, 1, 2].map(|k| p[k] + by[k]))]
 }
 
-/// `n` equal triangles, which move by that.
+/// `n` equal triangles, which move by `by`.
 fn equal(name: &str, n: usize, by: Corner) -> Body {
     loose(name, &vec![moved([[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], by); n])
 }
 
-/// `n` triangles in a plane, each moved within it on its own way.
+/// `n` triangles in a plane, each with its own motion within the plane.
 fn coplanar(n: usize) -> Body {
     let mut rng = Rng::new(3);
     let at = |[x, y]: [f64; 2]| [x, y, x + y];
@@ -44,7 +45,7 @@ fn coplanar(n: usize) -> Body {
     loose("coplanar", &(0..n).map(triangle).collect::<Vec<_>>())
 }
 
-/// `n` triangles along a line, `thick` off it, each moved along it on its own way.
+/// `n` triangles along a line, `thick` off it, each with its own motion along the line.
 fn slivers(name: &str, n: usize, thick: f64) -> Body {
     let mut rng = Rng::new(4);
     let triangle = |_| {
@@ -65,13 +66,13 @@ pub fn around(i: usize, n: usize) -> [f64; 3] {
     [cos, sin, 0.0]
 }
 
-/// A flat fan of `n` triangles at rest, each with a corner of its own in the middle: they all touch there.
+/// A flat fan of `n` triangles at rest, each with its own corner in the middle: all touch there.
 fn split_fan(n: usize) -> Body {
     let triangle = |i| moved([[0.0; 3], around(i, n), around(i + 1, n)], [0.0; 3]);
     loose("split fan", &(0..n).map(triangle).collect::<Vec<_>>())
 }
 
-/// All of them, by name, of so many triangles or a part of them.
+/// All scenes, by name; each has a `part`-th of its triangles.
 pub fn hard(part: usize) -> Vec<(&'static str, Body)> {
     vec![
         ("slivers-100", slivers("slivers", 100 / part, 1.0 / 1024.0)),

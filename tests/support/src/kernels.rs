@@ -1,6 +1,7 @@
 //! Kernels of tests.
 
-/// Test kernels: a name each, and what a block does; with `$args`, in blocks of that many lanes and bytes of shared memory.
+/// Test kernels: a name and a block's code for each; with `$args`, and blocks of `$lanes` lanes and
+/// `$shared` bytes of shared memory.
 #[macro_export]
 macro_rules! kernels {
     ([$args:ty], $lanes:expr, $shared:expr; $($name:ident |$b:ident, $a:ident| $body:block)*) => { $(

@@ -1,4 +1,5 @@
-//! What several test binaries share: devices, scenes, public data, judges, and the questions of the fuzz targets.
+//! Shared parts of the test binaries: devices, scenes, public data, judges, and the inputs of the
+//! fuzz targets.
 #![allow(missing_docs, reason = "only tests read it")]
 
 pub mod asked;
@@ -45,15 +46,15 @@ pub fn engine() -> Device {
     Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"))
 }
 
-/// A sanitizer in that order.
+/// A sanitizer with that order.
 pub fn sanitizer(order: Order) -> Device {
     Device::emulator(Emulator::new(Mode::Sanitizer(order), None).expect("threads"))
 }
 
-/// Every order that the tests run.
+/// Every order in the tests.
 pub const ORDERS: [Order; 3] = [Order::Forward, Order::Reverse, Order::Shuffled(20_261_121)];
 
-/// Every walk, some with sizes so small that everything spills and grows.
+/// Every walk, some with sizes so small that every list overflows and grows.
 pub fn walks() -> Vec<Traversal> {
     let small = QueueShape { cores: Some(5), local: 3, segment: 2, take: 1, ..QueueShape::native() };
     vec![
@@ -67,12 +68,12 @@ pub fn walks() -> Vec<Traversal> {
     ]
 }
 
-/// Every walk of queries of that kind; `None` where there is one alone.
+/// Every walk of queries of that kind; `None` if there is only one.
 pub fn walks_of(kind: QueryKind) -> Vec<Option<Traversal>> {
     if kind.takes_traversals() { walks().into_iter().map(Some).collect() } else { vec![None] }
 }
 
-/// That question with every volume, every walk and every refit of trees, and by tiles.
+/// The query with every volume, every walk and every refit of trees, and by tiles.
 pub fn ways(query: Query) -> impl Iterator<Item = Query> {
     let refits = [Refit::Levels, Refit::Treelets, Refit::BottomUp];
     let walks = move || walks_of(query.kind());
@@ -86,26 +87,26 @@ pub fn ways(query: Query) -> impl Iterator<Item = Query> {
     Bv::ALL.into_iter().flat_map(move |bv| of_trees(bv).chain(tiles(bv)))
 }
 
-/// One answer on one device: of one body against itself, of more against each other alone.
+/// One answer on one device: of one body against itself, of more against each other only.
 pub fn ask(device: Device, bodies: Vec<Body>, query: Query) -> nearmiss::Contacts {
     ask_scene(device, judged(bodies), query)
 }
 
-/// The bodies as judges ask them: one against itself, more against each other alone.
+/// The bodies as judges test them: one against itself, more against each other only.
 pub fn judged(bodies: Vec<Body>) -> Vec<Body> {
     if bodies.len() == 1 { bodies } else { between(bodies) }
 }
 
-/// These bodies, none tested against itself.
+/// The bodies, none tested against itself.
 pub fn between(bodies: Vec<Body>) -> Vec<Body> {
     let other = |body: Body| {
-        let meets = CollisionFilter { self_collision: Some(false), ..*body.filter() };
-        body.with_filter(meets)
+        let filter = CollisionFilter { self_collision: Some(false), ..*body.filter() };
+        body.with_filter(filter)
     };
     bodies.into_iter().map(other).collect()
 }
 
-/// The same, of any scene.
+/// One answer on one device, for any scene.
 pub fn ask_scene(device: Device, scene: impl Into<Scene>, query: Query) -> nearmiss::Contacts {
     let mut detector = OneQuery::new(device, scene, query).expect("a detector");
     let contacts = detector.detect().expect("an answer");
@@ -113,7 +114,7 @@ pub fn ask_scene(device: Device, scene: impl Into<Scene>, query: Query) -> nearm
     contacts
 }
 
-/// A still body of triangles given by their vertices.
+/// A body at rest, of triangles given by their vertices.
 pub fn still(points: &[[f32; 3]], faces: &[[u32; 3]]) -> Body {
     Body::deformable(Mesh::new("test", Positions::F32(points.to_vec()), faces.to_vec()).expect("a mesh"))
 }
@@ -126,17 +127,18 @@ pub fn moving(t0: &[[f32; 3]], t1: &[[f32; 3]], faces: &[[u32; 3]]) -> Body {
     Body::moving(frame(t0), frame(t1)).expect("two frames of one mesh")
 }
 
-/// A still body of triangles that share no vertex.
+/// A body at rest, of triangles that share no vertex.
 pub fn loose(triangles: &[[[f32; 3]; 3]]) -> Body {
     let faces: Vec<_> = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     still(triangles.as_flattened(), &faces)
 }
 
-/// The GPU, in a build with feature `cuda`. Tests that are built for one fail if there is none: they would have compared nothing.
+/// The GPU, in a build with feature `cuda`. Such tests fail if there is none: they would have
+/// compared nothing.
 fn gpu() -> Option<Device> {
     match Device::open(Backend::Cuda, None) {
         Ok(device) => Some(device),
-        // The library alone knows its features: those of this package would have to be named beside them.
+        // Only the library knows its features; this package would have to repeat them.
         Err(Error::Device { text, .. }) if text.contains("built without the feature `cuda`") => None,
         Err(error) => panic!("a test with feature `cuda` needs a GPU: {error}"),
     }
@@ -147,8 +149,8 @@ pub fn engine_and_gpu() -> Vec<Device> {
     [engine()].into_iter().chain(gpu()).collect()
 }
 
-/// Every machine that a test must not be able to tell apart: the engine on all threads and on one, with other blocks
-/// than usual, the sanitizer in each order, and the GPU.
+/// Every machine that must return the same answers. These are the engine on all threads and on one,
+/// with unusual blocks, the sanitizer in each order, and the GPU.
 pub fn machines() -> Vec<Device> {
     let emulator = |mode, threads| Emulator::new(mode, threads).expect("threads");
     let mut all = vec![emulator(Mode::Engine, None), emulator(Mode::Engine, Some(1))];

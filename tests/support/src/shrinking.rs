@@ -1,7 +1,8 @@
 //! A motion that no certificate decides.
 
-/// Two edges, each of a triangle that reaches far, that meet at a sixteenth of the step as one of them shrinks to a point: no
-/// certificate holds then, and no slice tells. At the start and at the end.
+/// Two edges, each of a large triangle, at the start and at the end of a step. They meet at a
+/// sixteenth of the step, as one of them shrinks to a point. No certificate holds then, and no
+/// slice decides it.
 pub const SHRINKING: [[[f32; 3]; 6]; 2] = [
     [
         [0.0, 60.0, -12.0],

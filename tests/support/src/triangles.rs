@@ -1,4 +1,4 @@
-//! Triangles at random, and as a kernel or the oracle sees them.
+//! Random triangles, and triangles in the form of a kernel or the oracle.
 
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_lab::oracle::Triangle;
@@ -10,17 +10,17 @@ pub fn random(seed: u64) -> SmallRng {
     SmallRng::seed_from_u64(seed)
 }
 
-/// The triangle in a kernel's precision; its coordinates are exact there or the caller wants them rounded.
+/// The triangle in a kernel's precision; its coordinates are rounded if they are not exact there.
 pub fn corners<R: Real>(t: &Triangle) -> [Vec3<R>; 3] {
     t.map(|p| Vec3(p.map(R::of)))
 }
 
-/// The triangle that the oracle sees: the numbers that the kernels see.
+/// The triangle for the oracle, with the kernels' coordinates.
 pub fn seen<R: Real>(t: &[Vec3<R>; 3]) -> Triangle {
     t.map(|p| p.0.map(R::wide))
 }
 
-/// Corners on the grid 0..n: with a small n most triangles touch, align, coincide or collapse.
+/// Corners on the grid 0..n: for a small n most triangles touch, align, coincide or collapse.
 pub fn on_grid(r: &mut SmallRng, n: i32) -> Triangle {
     let mut t = [[0.0; 3]; 3];
     t.iter_mut().flatten().for_each(|x| *x = r.random_range(0..n) as f64);
@@ -37,8 +37,9 @@ pub fn anywhere(r: &mut SmallRng) -> Triangle {
 /// The six orders of three corners.
 pub const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
 
-/// Different triangles around the origin in the plane x + y + z = 0, corners on a fine grid: the sums are exact in
-/// floats, their products are not, so the filters cannot see the plane, and every pair meets in the origin.
+/// Different triangles around the origin in the plane x + y + z = 0, with corners on a fine grid.
+/// Sums are exact in floats, products are not, so the filters cannot detect the plane, and every
+/// pair meets at the origin.
 pub fn in_one_plane(count: u32) -> Vec<[[f32; 3]; 3]> {
     let mut rng = nearmiss_lab::scene::Rng::new(8);
     let mut corner = |x: f64, y: f64| {

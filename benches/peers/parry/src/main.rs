@@ -1,9 +1,9 @@
-//! `nearmiss-peer-parry A.ply B.ply REPEAT`: how far apart parry3d says that two meshes are, in f32 and in f64, and how long it takes:
-//! a line of JSON each. The files are those that `scenes.py` writes.
+//! `nearmiss-peer-parry A.ply B.ply REPEAT`: distance of two meshes by parry3d and its time, in f32
+//! and in f64: one line of JSON each. The files are those of `scenes.py`.
 
 use std::time::Instant;
 
-/// A mesh as the file has it.
+/// The mesh of a file.
 struct Mesh {
     vertices: Vec<[f32; 3]>,
     triangles: Vec<[u32; 3]>,
@@ -36,8 +36,8 @@ fn median(mut times: Vec<f64>) -> f64 {
     times[times.len() / 2]
 }
 
-/// The same program for each of the two crates.
-macro_rules! ask {
+/// The same measurement for both crates.
+macro_rules! measure {
     ($parry:ident, $real:ty, $name:literal, $meshes:expr, $repeat:expr) => {{
         use $parry::{math::{Pose, Vector}, query, shape::TriMesh};
         let make = |mesh: &Mesh| {
@@ -55,16 +55,16 @@ macro_rules! ask {
             milliseconds(started)
         };
         let query = median((0..$repeat).map(run).collect());
-        let told = serde_json::json!({ "name": $name, "distance": f64::from(distance), "build": build, "query": query });
-        println!("{told}");
+        let line = serde_json::json!({ "name": $name, "distance": f64::from(distance), "build": build, "query": query });
+        println!("{line}");
     }};
 }
 
 fn main() {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let [a, b, repeat] = &args[..] else { panic!("three arguments: A.ply B.ply REPEAT") };
-    let repeat: usize = repeat.parse().expect("how often");
+    let repeat: usize = repeat.parse().expect("REPEAT is a number");
     let meshes = [read(a), read(b)];
-    ask!(parry3d, f32, "parry3d, f32", meshes, repeat);
-    ask!(parry3d_f64, f64, "parry3d, f64", meshes, repeat);
+    measure!(parry3d, f32, "parry3d, f32", meshes, repeat);
+    measure!(parry3d_f64, f64, "parry3d, f64", meshes, repeat);
 }

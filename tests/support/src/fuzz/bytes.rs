@@ -1,24 +1,26 @@
-//! Bytes as coordinates that are likely to be hard: few different ones, nearly equal ones, powers of two, the smallest and
-//! the largest.
+//! Bytes as coordinates that are likely to be hard: few different ones, nearly equal ones, powers
+//! of two, the smallest and the largest.
 
 /// Reads bytes; past the end all are zero.
 pub struct Bytes<'a> {
     left: &'a [u8],
-    /// Coordinates read so far, for others to be equal or close to.
+    /// Coordinates read so far; later ones may equal or nearly equal them.
     seen: Vec<f64>,
     /// Coordinates are rounded to f32.
     single: bool,
-    /// How most coordinates of this question are made.
+    /// Construction of most coordinates of this input.
     style: u8,
-    /// What the axes are stretched by, as powers of two.
+    /// Stretch of the axes, as powers of two.
     stretch: [i32; 3],
 }
 
-/// First bytes from here on ask for a stretch, by their two next bits: huge, mixed-scale, axes-extreme, tiny.
+/// First bytes from here on stretch the axes, by their two next bits: huge, mixed-scale,
+/// axes-extreme, tiny.
 pub const DIRECTED: u8 = 0xc0;
 
 impl<'a> Bytes<'a> {
-    /// The first byte says how coordinates are made, whether in f32, and whether axes are stretched.
+    /// Reads the first byte: the construction of coordinates, whether they are in f32, and whether
+    /// axes are stretched.
     pub fn new(bytes: &'a [u8]) -> Bytes<'a> {
         let mut new = Bytes { left: bytes, seen: Vec::new(), single: false, style: 0, stretch: [0; 3] };
         let first = new.byte();
@@ -30,13 +32,13 @@ impl<'a> Bytes<'a> {
         new
     }
 
-    /// By how much the axes of a directed family are stretched.
+    /// The stretch of the axes in a directed family.
     fn stretched(&mut self, family: u8) -> [i32; 3] {
         let (least, most) = if self.single { (-149, 60) } else { (-1074, 480) };
         let by = [0; 3].map(|_| i32::from(self.byte()));
         let turn = by[0] as usize % 3;
         let mut all = match family {
-            // Of coordinates that are mostly small.
+            // For coordinates that are mostly small.
             0 => [most - 5 - by[0] % 16; 3],
             1 => by.map(|by| most * (by - 128) / 256),
             2 => {
@@ -49,7 +51,7 @@ impl<'a> Bytes<'a> {
         all
     }
 
-    /// `x 2^e` in the question's precision; `x` where that is not finite.
+    /// `x 2^e` in the input's precision; `x` if that is not finite.
     fn stretch(&self, x: f64, e: i32) -> f64 {
         let y = x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2);
         let y = if self.single { f64::from(y as f32) } else { y };
@@ -82,7 +84,7 @@ impl<'a> Bytes<'a> {
     pub fn coordinate(&mut self) -> f64 {
         let byte = self.byte();
         let small = f64::from(byte as i8 >> 3);
-        // Of eight, five are made as the question's style says.
+        // Five of eight are made in the input's style.
         let x = match if byte & 7 < 5 { self.style % 8 } else { byte & 7 } {
             0 => f64::from(byte as i8 >> 6),
             1 => small,
@@ -99,7 +101,7 @@ impl<'a> Bytes<'a> {
         x
     }
 
-    /// One seen before, or next to it, or its negative.
+    /// An earlier coordinate, or its neighbour, or its negative.
     fn again(&mut self, byte: u8, small: f64) -> f64 {
         let Some(from) = self.seen.len().checked_sub(1) else { return small };
         let x = self.seen[from - usize::from(byte >> 5) % self.seen.len()];
@@ -113,7 +115,7 @@ impl<'a> Bytes<'a> {
         }
     }
 
-    /// Any number, or one far away.
+    /// Any number, or a distant one.
     fn any(&mut self, small: f64) -> f64 {
         match self.below(4) {
             0 if self.single => f64::from(f32::from_bits(self.word() as u32)),
@@ -131,7 +133,7 @@ impl<'a> Bytes<'a> {
         [0, 1, 2].map(|k| self.stretch(x[k], by[k]))
     }
 
-    /// A point; half of the time one of those given.
+    /// A point; half of the time one of `given`.
     pub fn point_or(&mut self, given: &[[f64; 3]]) -> [f64; 3] {
         match self.byte() {
             byte if byte & 1 == 1 && !given.is_empty() => given[usize::from(byte >> 1) % given.len()],

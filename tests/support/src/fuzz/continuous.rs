@@ -8,7 +8,8 @@ use nearmiss_kernels::prim::isolate::{Rungs, ee_certified, vf_certified};
 use nearmiss_lab::oracle::{Toi, first_contact};
 use nearmiss_lab::{Case, Features};
 
-/// A question: the motion, what a certified solver is asked, and whether f32 holds all positions.
+/// The input of a test: the motion, the parameters of a certified solver, and whether f32 holds all
+/// positions.
 pub fn decode(bytes: &[u8]) -> (Case, Params, bool) {
     let mut b = Bytes::new(bytes);
     let shape = b.byte();
@@ -17,7 +18,7 @@ pub fn decode(bytes: &[u8]) -> (Case, Params, bool) {
     let mut points: Vec<[f64; 3]> = Vec::new();
     for i in 0..8 {
         let point = match shape >> 1 & 7 {
-            // Some stand still; some motions lie in a plane.
+            // Some points are at rest; some motions are in a plane.
             1 if i > 4 => points[i - 4],
             2 => {
                 let [x, y, _] = b.point_or(&points);
@@ -28,13 +29,13 @@ pub fn decode(bytes: &[u8]) -> (Case, Params, bool) {
         points.push(point.map(|x| x.clamp(-limit, limit)));
     }
     let tolerance = [1e-6, 0.0, 1e-3, 1e-9][usize::from(shape >> 4 & 3)];
-    let budget = [Params::MAX_ITERATIONS, 64][usize::from(shape >> 6 & 1)];
+    let max_iterations = [Params::MAX_ITERATIONS, 64][usize::from(shape >> 6 & 1)];
     let at = |from: usize| [0, 1, 2, 3].map(|i| points[from + i]);
     let case = Case { features, positions_t0: at(0), positions_t1: at(4) };
-    (case, Params { max_iterations: budget, ..Params::new(tolerance) }, b.is_single())
+    (case, Params { max_iterations, ..Params::new(tolerance) }, b.is_single())
 }
 
-/// Asks, and judges the certified answers as `lie` passes them on.
+/// Runs the solvers, and judges the certified answers after `lie` has changed them.
 pub fn ask(bytes: &[u8], lie: impl Fn(Verdict) -> Verdict) -> Result<(), String> {
     let (case, params, single) = decode(bytes);
     let truth = first_contact(&case);
@@ -51,11 +52,11 @@ pub fn ask(bytes: &[u8], lie: impl Fn(Verdict) -> Verdict) -> Result<(), String>
     Ok(())
 }
 
-/// What is wrong with a verdict that should be certain.
+/// The fault of a verdict that should be certain, if it has one.
 pub fn fault(verdict: &Verdict, truth: Option<&Toi>) -> Option<&'static str> {
     let Verdict { toi, toi_upper, .. } = *verdict;
     if !(0.0 <= toi && toi <= toi_upper && toi_upper <= 1.0) {
-        return Some("times that are none");
+        return Some("times out of range");
     }
     match truth {
         None => verdict.is_contact().then_some("a false certificate"),
@@ -66,7 +67,7 @@ pub fn fault(verdict: &Verdict, truth: Option<&Toi>) -> Option<&'static str> {
     }
 }
 
-/// Every certified answer to positions in `R`. What others say need only be a time.
+/// Every certified answer to positions in `R`. The other solvers' answers need only be times.
 fn answers<R: Real>(
     case: &Case,
     params: &Params,
@@ -75,18 +76,18 @@ fn answers<R: Real>(
     let at = |p: [f64; 3]| Vec3(p.map(R::of));
     let p = [0, 1, 2, 3].map(|i| Moving { t0: at(case.positions_t0[i]), t1: at(case.positions_t1[i]) });
     let (f, ea, eb) = ([p[1], p[2], p[3]], [p[0], p[1]], [p[2], p[3]]);
-    let (guesses, apart) = match case.features {
+    let (estimates, apart) = match case.features {
         Features::VertexFace => {
-            let guesses = [vf_toi::<R, f64>(p[0], f), vf_toi::<R, f32>(p[0], f).map(f64::from)];
-            (guesses, vf_apart::<R, f32>(p[0], f) || vf_apart::<R, f64>(p[0], f))
+            let estimates = [vf_toi::<R, f64>(p[0], f), vf_toi::<R, f32>(p[0], f).map(f64::from)];
+            (estimates, vf_apart::<R, f32>(p[0], f) || vf_apart::<R, f64>(p[0], f))
         }
         Features::EdgeEdge => {
-            let guesses = [ee_toi::<R, f64>(ea, eb), ee_toi::<R, f32>(ea, eb).map(f64::from)];
-            (guesses, ee_apart::<R, f32>(ea, eb) || ee_apart::<R, f64>(ea, eb))
+            let estimates = [ee_toi::<R, f64>(ea, eb), ee_toi::<R, f32>(ea, eb).map(f64::from)];
+            (estimates, ee_apart::<R, f32>(ea, eb) || ee_apart::<R, f64>(ea, eb))
         }
     };
-    if let Some(toi) = guesses.iter().flatten().find(|toi| !(0.0..=1.0).contains(*toi)) {
-        return Err(format!("the cubic says {toi}, which is no time: {case:?}"));
+    if let Some(toi) = estimates.iter().flatten().find(|toi| !(0.0..=1.0).contains(*toi)) {
+        return Err(format!("the cubic returns {toi}, which is not in [0, 1]: {case:?}"));
     }
     if apart && truth.is_some() {
         return Err(format!("rejected by signs: {case:?}"));
@@ -102,7 +103,7 @@ fn answers<R: Real>(
     Ok(all.map(|(name, verdict)| (format!("{name}, of {} bytes", size_of::<R>()), verdict)).into())
 }
 
-/// By the rungs of a frame's solver.
+/// The verdict by the rungs of a frame's solver.
 fn certified<R: Real>(features: Features, p: [Moving<R>; 4], rungs: Rungs, params: &Params) -> Verdict {
     match features {
         Features::VertexFace => vf_certified(p[0], [p[1], p[2], p[3]], rungs, params),
@@ -110,7 +111,7 @@ fn certified<R: Real>(features: Features, p: [Moving<R>; 4], rungs: Rungs, param
     }
 }
 
-/// By boxes alone: the last rung, of everything.
+/// The verdict by boxes alone: the last rung, for all pairs.
 fn searched<R: Real, S: Grid>(features: Features, p: [Moving<R>; 4], params: &Params) -> Verdict {
     match features {
         Features::VertexFace => inclusion::vf_certified::<R, S>(p[0], [p[1], p[2], p[3]], params),

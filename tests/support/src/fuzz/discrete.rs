@@ -7,7 +7,7 @@ use nearmiss_kernels::prim::tri_tri::meets_exactly;
 use nearmiss_lab::oracle::{Triangle, triangles_meet};
 use std::hint::black_box;
 
-/// The triangles that the bytes are, and whether f32 holds them.
+/// The triangles of the bytes, and whether f32 holds them.
 pub fn decode(bytes: &[u8]) -> ([Triangle; 2], bool) {
     let mut b = Bytes::new(bytes);
     let mut points = Vec::new();
@@ -20,7 +20,7 @@ pub fn decode(bytes: &[u8]) -> ([Triangle; 2], bool) {
     ([t(0), t(3)], b.is_single())
 }
 
-/// Asks, and judges the answer as `lie` passes it on.
+/// Tests the triangles, and judges the answer after `lie` has changed it.
 pub fn ask(bytes: &[u8], lie: impl Fn(bool) -> bool) -> Result<(), String> {
     let (triangles, single) = decode(bytes);
     let mut answers = vec![("f64", answer::<f64>(&triangles))];
@@ -31,13 +31,13 @@ pub fn ask(bytes: &[u8], lie: impl Fn(bool) -> bool) -> Result<(), String> {
     for (precision, found) in answers {
         let found = lie(found);
         if found != truth {
-            return Err(format!("exact in {precision} says {found}, the oracle {truth}: {triangles:?}"));
+            return Err(format!("exact in {precision} returns {found}, the oracle {truth}: {triangles:?}"));
         }
     }
     Ok(())
 }
 
-/// What exact signs say; the float test need only come back.
+/// The answer by exact signs; the float test need only return.
 fn answer<R: Real>(triangles: &[Triangle; 2]) -> bool {
     let [p, q] = triangles.map(|t| t.map(|x| Vec3(x.map(R::of))));
     black_box(moller(&p, &q));

@@ -1,4 +1,4 @@
-//! A handful of triangles at rest: how far apart two bodies are, against every pair asked of the oracle.
+//! A handful of triangles at rest: the distance of two bodies, against every pair by the oracle.
 
 use super::near::at_start;
 use super::scene::{decode, detect, typed};
@@ -7,7 +7,8 @@ use nearmiss::Query;
 use nearmiss::contacts::Rows;
 use nearmiss::query::Search;
 
-/// The bodies of a scene's bytes at the start of their step, and the answer as `lie` passes it on, judged; of one body it has to be none.
+/// Judges a distance query after `lie` has changed its answer. The bodies are a scene's at the
+/// start of its step; one body alone has no answer.
 pub fn ask(bytes: &[u8], lie: impl Fn(&mut Rows)) -> Result<(), String> {
     let Ok((bodies, query)) = decode(bytes) else { return Ok(()) };
     let bodies = match at_start(&bodies) {

@@ -1,4 +1,5 @@
-//! The same scene from memory that the host does not look at: submitted where the walk can be, else asked as a frame.
+//! The same scene from device-resident positions: submitted if the walk allows that, else queried
+//! as a frame.
 
 use super::scene::asked;
 use nearmiss::device::Buffer;
@@ -21,7 +22,7 @@ impl Held {
     }
 
     fn rows(&self) -> Result<DeviceRows, Error> {
-        // SAFETY: the buffers outlive the detector below, and nobody writes them.
+        // SAFETY: the buffers outlive the detector below, and nothing writes them.
         unsafe {
             match self {
                 Held::F32(buffer) => DeviceRows::new(buffer.span().addr(), buffer.len(), 12, Number::F32),
@@ -31,10 +32,10 @@ impl Held {
     }
 }
 
-/// The answer.
+/// The answer of a query with device-resident positions.
 ///
 /// # Errors
-/// Those of the library.
+/// Errors of the library.
 pub fn detect(device: &Device, bodies: &[Body], query: Query) -> Result<Contacts, Error> {
     let held: Vec<[Held; 2]> = bodies
         .iter()

@@ -1,7 +1,8 @@
-//! What the fuzz targets ask, and the judges of what is answered: shared with tests/frames/fuzz_pairs.rs, which runs on stable.
+//! Inputs of the fuzz targets, and the judges of the answers: shared with
+//! tests/frames/fuzz_pairs.rs, which runs on stable.
 //!
-//! Each question is a function from bytes to `Ok`, or to what is wrong with the answer. A `lie` changes an answer before it
-//! is judged: to show that the judge notices.
+//! Each target is a function from bytes to `Ok`, or to the fault of the answer. A `lie` changes an
+//! answer before the judge: it shows that the judge finds the fault.
 
 pub mod bytes;
 pub mod continuous;
@@ -11,7 +12,7 @@ pub mod lent;
 pub mod near;
 pub mod scene;
 
-/// Whether a fault is to be planted: a run that finds nothing then is a run that could not.
+/// Whether to plant a fault. A run that finds none then has a judge that finds none.
 pub fn planted() -> bool {
     static PLANTED: std::sync::OnceLock<bool> = std::sync::OnceLock::new();
     *PLANTED.get_or_init(|| std::env::var_os("NEARMISS_PLANT_A_FAULT").is_some())

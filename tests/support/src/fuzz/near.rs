@@ -1,4 +1,4 @@
-//! A handful of triangles at rest: what is within a distance, against every pair asked of the oracle.
+//! A handful of triangles at rest: the pairs within a distance, against every pair by the oracle.
 
 use super::scene::{decode, detect, typed};
 use crate::judges::near::Truth;
@@ -7,15 +7,15 @@ use nearmiss::contacts::Rows;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh};
 
-/// The bodies of a scene's bytes at the start of their step, a distance that the first byte chooses among powers of two, and the answer
-/// as `lie` passes it on, judged.
+/// Judges a near query after `lie` has changed its answer. The bodies are a scene's at the start of
+/// its step. The first byte chooses the distance among powers of two.
 pub fn ask(bytes: &[u8], lie: impl Fn(&mut Rows)) -> Result<(), String> {
     let Ok((bodies, query)) = decode(bytes) else { return Ok(()) };
     let bodies = match at_start(&bodies) {
         Ok(bodies) => bodies,
         Err(error) => return typed(&error),
     };
-    // Around the sizes of coordinates: 2^-12 to 2^3.
+    // Similar to the sizes of coordinates: 2^-12 to 2^3.
     let power = i32::from(bytes.first().copied().unwrap_or(0) >> 4) - 12;
     let query = Query::near(2.0_f64.powi(power)).with_search(query.search());
     let Query::Near(near) = query else { return Ok(()) };
@@ -28,10 +28,10 @@ pub fn ask(bytes: &[u8], lie: impl Fn(&mut Rows)) -> Result<(), String> {
     fault.map_or(Ok(()), |what| Err(format!("{what}; {query:?}, {bodies:?}")))
 }
 
-/// The bodies where they are at the start of their step.
+/// The bodies at the start of their step.
 ///
 /// # Errors
-/// Those of the door.
+/// Errors of the library.
 pub fn at_start(bodies: &[Body]) -> Result<Vec<Body>, Error> {
     let still = |body: &Body| {
         let mesh = Mesh::new("fuzz", body.positions_t0().clone(), body.faces().to_vec());

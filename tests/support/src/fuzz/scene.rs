@@ -1,4 +1,5 @@
-//! A handful of triangles, whole: every solver, volume, walk and refit against every pair asked of the oracle.
+//! A handful of triangles, whole: every solver, volume, walk and refit, against every pair by the
+//! oracle.
 
 use super::bytes::Bytes;
 use super::lent;
@@ -15,10 +16,10 @@ use nearmiss_lab::oracle::{Toi, first_contact, triangles_meet};
 use nearmiss_lab::{Case, Features};
 use std::collections::BTreeMap;
 
-/// One or two bodies of one to eight triangles, moving or still; any index may be any corner.
+/// One or two bodies of one to eight triangles, moving or at rest; any index may be any corner.
 ///
 /// # Errors
-/// Those of the door.
+/// Errors of the library.
 pub fn decode(bytes: &[u8]) -> Result<(Vec<Body>, Query), Error> {
     let mut b = Bytes::new(bytes);
     let (choice, shape) = (b.byte(), b.byte());
@@ -32,7 +33,7 @@ pub fn decode(bytes: &[u8]) -> Result<(Vec<Body>, Query), Error> {
         Traversal::Steal(StealShape { cores: Some(3), ..StealShape::native() }),
         Traversal::Front(FrontShape { queue, ..FrontShape::native() }),
     ];
-    // Beyond the walks: tiles, which have one way.
+    // After the last walk: tiles, which have one traversal.
     let traversal = walks.get(usize::from(shape >> 2 & 15) % (walks.len() + 1)).copied();
     let refit = [Refit::Levels, Refit::Treelets, Refit::BottomUp][usize::from(shape >> 6) % 3];
     let query = queries[usize::from(choice / 3) % queries.len()].with_search(Search {
@@ -70,12 +71,13 @@ fn body(b: &mut Bytes) -> Result<Body, Error> {
 }
 
 thread_local! {
-    /// Small blocks: scenes are.
+    /// Small blocks, for small scenes.
     static ENGINE: Device =
         Device::emulator(Emulator::new(Mode::Engine, Some(1)).expect("a thread").with_lanes(16));
 }
 
-/// Asks, and judges the contacts as `lie` passes them on. A typed error is an answer; a fault of ours is none.
+/// Queries a scene, and judges the contacts after `lie` has changed them. A typed error is a valid
+/// answer, except a fault of ours.
 pub fn ask(bytes: &[u8], lie: impl Fn(&mut Rows)) -> Result<(), String> {
     let (bodies, query) = match decode(bytes) {
         Ok(all) => all,
@@ -88,42 +90,44 @@ pub fn ask(bytes: &[u8], lie: impl Fn(&mut Rows)) -> Result<(), String> {
     match ENGINE.with(|engine| lent::detect(engine, &bodies, query)) {
         Ok(other) if other.rows == contacts.rows => {}
         Ok(other) => {
-            let (lent, host) = (other.rows, contacts.rows);
-            return Err(format!("lent: {lent:?}, from the host {host:?}; {query:?}, {bodies:?}"));
+            let (resident, host) = (other.rows, contacts.rows);
+            return Err(format!(
+                "device-resident {resident:?}, from the host {host:?}; {query:?}, {bodies:?}"
+            ));
         }
-        Err(error) => return Err(format!("lent: {error}; {query:?}, {bodies:?}")),
+        Err(error) => return Err(format!("device-resident: {error}; {query:?}, {bodies:?}")),
     }
     lie(&mut contacts.rows);
     judge(&bodies, &query, &contacts.rows).map_err(|what| format!("{what}; {query:?}, {bodies:?}"))
 }
 
-/// The bodies as the judges ask them: one against itself, two against each other alone.
+/// The bodies as the judges test them: one against itself, two against each other only.
 pub fn asked(bodies: &[Body]) -> Vec<Body> {
-    let meets = if bodies.len() == 1 {
+    let filter = if bodies.len() == 1 {
         CollisionFilter::with_self_collision()
     } else {
         CollisionFilter::without_self_collision()
     };
-    bodies.iter().map(|body| body.clone().with_filter(meets)).collect()
+    bodies.iter().map(|body| body.clone().with_filter(filter)).collect()
 }
 
-/// One answer.
+/// The answer of a query.
 ///
 /// # Errors
-/// Those of the library.
+/// Errors of the library.
 pub fn detect(bodies: &[Body], query: Query) -> Result<Contacts, Error> {
     ENGINE.with(|engine| Detector::new(engine.clone(), asked(bodies))?.query(&query))
 }
 
-/// A typed error is an answer, a fault of ours is none.
+/// Accepts a typed error, except a fault of ours.
 ///
 /// # Errors
-/// What it says.
+/// The text of a fault of ours.
 pub fn typed(error: &Error) -> Result<(), String> {
     if matches!(error, Error::Bug { .. }) { Err(error.to_string()) } else { Ok(()) }
 }
 
-/// A lie: the last contact is left out.
+/// A planted fault: the last contact is left out.
 pub fn forget(answer: &mut Rows) {
     match answer {
         Rows::Pairs(pairs) => pairs.truncate(pairs.len().saturating_sub(1)),
@@ -134,7 +138,7 @@ pub fn forget(answer: &mut Rows) {
     }
 }
 
-/// What is wrong with an answer.
+/// The fault of an answer, if it has one.
 pub fn judge(bodies: &[Body], query: &Query, answer: &Rows) -> Result<(), String> {
     let certain = query.solver().is_certain();
     match answer {
@@ -151,14 +155,14 @@ pub fn judge(bodies: &[Body], query: &Query, answer: &Rows) -> Result<(), String
                 None => Ok(()),
             }
         }
-        // The target `near` asks the oracle of distances.
+        // The target `near` compares distances with the oracle.
         Rows::Near(_) | Rows::Distance(_) => Ok(()),
         Rows::Earliest(found) => {
             let all = every_pair(bodies);
             let first = all.values().flatten().min();
             match (found, first) {
                 (Some(toi), _) if !(0.0..=1.0).contains(toi) => {
-                    Err(format!("earliest {toi}, which is no time"))
+                    Err(format!("earliest {toi}, which is not in [0, 1]"))
                 }
                 (None, Some(first)) if certain => Err(format!("none, truly first at {:?}", first.bracket())),
                 (Some(toi), Some(first)) if certain && first.cmp_f64(*toi).is_lt() => {
@@ -171,9 +175,9 @@ pub fn judge(bodies: &[Body], query: &Query, answer: &Rows) -> Result<(), String
 }
 
 fn judge_one(c: &Contact, all: &BTreeMap<Row, Option<Toi>>, certain: bool) -> Result<(), String> {
-    let Some(truth) = all.get(&row(c)) else { return Err(format!("{c:?} is no pair")) };
+    let Some(truth) = all.get(&row(c)) else { return Err(format!("{c:?} is not a pair of the scene")) };
     if !(0.0 <= c.toi && c.toi <= c.toi_upper && c.toi_upper <= 1.0) {
-        return Err(format!("{c:?}: times that are none"));
+        return Err(format!("{c:?}: times out of range"));
     }
     let sure = c.status == Status::Certified;
     match truth {
@@ -188,7 +192,7 @@ fn judge_one(c: &Contact, all: &BTreeMap<Row, Option<Toi>>, certain: bool) -> Re
     }
 }
 
-/// Every pair of features that detect should ask about, and when first they meet.
+/// Every pair of features that a query tests, and its first contact.
 fn every_pair(bodies: &[Body]) -> BTreeMap<Row, Option<Toi>> {
     let ends: Vec<[Vec<[f64; 3]>; 2]> = bodies
         .iter()
@@ -197,8 +201,8 @@ fn every_pair(bodies: &[Body]) -> BTreeMap<Row, Option<Toi>> {
             [first.clone(), body.positions_t1().map_or(first, Positions::to_f64)]
         })
         .collect();
-    let ask = |features, of: [(usize, u32); 4]| {
-        let at = |end: usize| of.map(|(body, v)| ends[body][end][v as usize]);
+    let first_of = |features, vertices: [(usize, u32); 4]| {
+        let at = |end: usize| vertices.map(|(body, v)| ends[body][end][v as usize]);
         first_contact(&Case { features, positions_t0: at(0), positions_t1: at(1) })
     };
     let mut all = BTreeMap::new();
@@ -210,7 +214,7 @@ fn every_pair(bodies: &[Body]) -> BTreeMap<Row, Option<Toi>> {
                 bodies[f_of].faces().iter().enumerate().filter(|(_, c)| !one || !c.contains(&v))
             {
                 let [i, j, k] = corners.map(|c| (f_of, c));
-                let toi = ask(Features::VertexFace, [(v_of, v), i, j, k]);
+                let toi = first_of(Features::VertexFace, [(v_of, v), i, j, k]);
                 all.insert((Kind::Vf, [v_of, f_of], [v, f as u32]), toi);
             }
         }
@@ -221,9 +225,9 @@ fn every_pair(bodies: &[Body]) -> BTreeMap<Row, Option<Toi>> {
     }
     let edges = [a, b].map(|i| Topology::new(bodies[i].faces(), bodies[i].vertex_count()).edges);
     for (i, e) in edges[0].iter().enumerate() {
-        let rest = edges[1].iter().enumerate().skip(if one { i + 1 } else { 0 });
-        for (j, g) in rest.filter(|(_, g)| !one || !e.iter().any(|v| g.contains(v))) {
-            let toi = ask(Features::EdgeEdge, [(a, e[0]), (a, e[1]), (b, g[0]), (b, g[1])]);
+        let others = edges[1].iter().enumerate().skip(if one { i + 1 } else { 0 });
+        for (j, g) in others.filter(|(_, g)| !one || !e.iter().any(|v| g.contains(v))) {
+            let toi = first_of(Features::EdgeEdge, [(a, e[0]), (a, e[1]), (b, g[0]), (b, g[1])]);
             all.insert((Kind::Ee, [a, b], [i as u32, j as u32]), toi);
         }
     }

@@ -1,4 +1,4 @@
-//! What is wrong with an answer about the nearest triangles, beside the exact one.
+//! The judge of a distance query's answer, by the exact one.
 
 use nearmiss::contacts::NearestTriangles;
 use nearmiss::mesh::Body;
@@ -30,14 +30,14 @@ pub fn is_root(length: f64, squared: &Squared, error: f64) -> bool {
         && (length <= error || !squared.is_within((length - error).next_down().next_down()))
 }
 
-/// What is true of bodies that all may meet each other.
+/// The exact answer for bodies.
 pub struct Truth {
     bodies: Vec<Vec<Triangle>>,
     pub least: Option<Squared>,
 }
 
 impl Truth {
-    /// Of bodies; of those that `meet`, by their places.
+    /// The answer for bodies; those pairs count that `meet`, by their indices.
     pub fn of(bodies: &[Body], meet: impl Fn(usize, usize) -> bool) -> Truth {
         let all: Vec<_> = bodies.iter().map(triangles).collect();
         let mut least: Option<Squared> = None;
@@ -53,18 +53,18 @@ impl Truth {
         Truth { bodies: all, least }
     }
 
-    /// What is wrong with an answer.
+    /// The fault of an answer, if it has one.
     pub fn fault(&self, found: Option<&NearestTriangles>) -> Result<(), String> {
         let (found, least) = match (found, &self.least) {
             (None, None) => return Ok(()),
             (Some(found), Some(least)) => (found, least),
-            (found, least) => return Err(format!("{found:?} where the least is {least:?}")),
+            (found, least) => return Err(format!("{found:?}, but the least is {least:?}")),
         };
         let fault = |what: String| Err(format!("{what}, truly {:e}: {found:?}", least.to_f64().sqrt()));
         let own = [0, 1].map(|k| self.bodies[found.bodies[k].index()][found.triangles[k] as usize]);
         let error = DISTANCE_ERROR * extent(&self.bodies.concat()) + f64::from_bits(2);
         if (found.distance == 0.0) != least.is_within(0.0) {
-            return fault("0, or not".into());
+            return fault("a wrong zero, or a missing one".into());
         }
         let theirs = triangles_squared(&own[0], &own[1]);
         if found.distance == 0.0 && !theirs.is_within(0.0) {
@@ -86,13 +86,13 @@ impl Truth {
             }
             let at = |c: usize| weights.iter().zip(corners).map(|(w, corner)| w * corner[c]).sum::<f64>();
             if !(0..3).all(|c| (at(c) - point[c]).abs() <= error + 8.0 * U64 * at(c).abs()) {
-                return fault("points beside their weights".into());
+                return fault("points that differ from their weights".into());
             }
         }
         let [p, q] = found.points;
-        // Squares need not be numbers.
+        // Squares may overflow or underflow.
         let apart = (0..3).map(|c| p[c] - q[c]).fold(0.0, f64::hypot);
-        // Points are rounded where they are: far from the origin by more than their difference.
+        // Rounding of points depends on their coordinates, which may exceed their difference.
         let largest = p.iter().chain(&q).fold(0.0f64, |most, x| most.max(x.abs()));
         if !is_root(apart, &theirs, 4.0 * error + 16.0 * U64 * largest) {
             return fault("points that are not that far apart".into());
@@ -101,7 +101,7 @@ impl Truth {
     }
 }
 
-/// What the kernels say of two triangles.
+/// The answer of the kernels for two triangles.
 pub fn asked<R: Real>(p: &Triangle, q: &Triangle) -> Nearest {
     let [p, q] = [p, q].map(|of| of.map(|p| Vec3(p.map(R::of))));
     Nearest::of(&p, &q)

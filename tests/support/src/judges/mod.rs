@@ -1,4 +1,4 @@
-//! What is wrong with an answer beside the exact one, by kinds of queries.
+//! Judges of answers by the exact ones, by kinds of queries.
 
 pub mod distance;
 pub mod near;

@@ -1,4 +1,4 @@
-//! What is wrong with an answer about features at rest, beside the exact one.
+//! The judge of a near query's answer, by the exact one.
 
 use nearmiss::contacts::{Closest, Kind, NearPair};
 use nearmiss::mesh::Body;
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 pub type Points = [[f64; 3]; 4];
 
-/// The largest component of the differences that a pair is made of.
+/// The largest component of a pair's differences.
 pub fn reach(features: Features, [a, b, c, d]: Points) -> f64 {
     let differences = match features {
         Features::VertexFace => [(a, b), (b, c), (b, d)],
@@ -21,7 +21,7 @@ pub fn reach(features: Features, [a, b, c, d]: Points) -> f64 {
     components.fold(0.0, f64::max)
 }
 
-/// What the kernels say of one pair.
+/// The answer of the kernels for one pair.
 pub fn asked<R: Real>(features: Features, points: Points, distance: f64) -> Option<Near> {
     let [a, b, c, d] = points.map(|p| Vec3(p.map(R::of)));
     match features {
@@ -30,7 +30,7 @@ pub fn asked<R: Real>(features: Features, points: Points, distance: f64) -> Opti
     }
 }
 
-/// The weights that the kernels mean.
+/// The weights of the kernels' parameters.
 pub fn weights(features: Features, at: [f64; 2]) -> [f64; 3] {
     match features {
         Features::VertexFace => corner_weights(at),
@@ -38,7 +38,8 @@ pub fn weights(features: Features, at: [f64; 2]) -> [f64; 3] {
     }
 }
 
-/// The weights of a face, or the places on two edges, that four vertices' weights mean; `None` if they disagree.
+/// The weights of a face, or the places on two edges, from the weights of four vertices; `None` if
+/// they disagree.
 pub fn places(features: Features, [a, b, c, d]: [f64; 4]) -> Option<[f64; 3]> {
     match features {
         Features::VertexFace => (a == 1.0).then_some([b, c, d]),
@@ -46,7 +47,7 @@ pub fn places(features: Features, [a, b, c, d]: [f64; 4]) -> Option<[f64; 3]> {
     }
 }
 
-/// What is wrong with a listed pair.
+/// The fault of a listed pair, if it has one.
 pub fn wrong(
     (features, points): (Features, Points),
     (squared, weights): (f64, [f64; 3]),
@@ -56,9 +57,9 @@ pub fn wrong(
     let reach = reach(features, points);
     let error = DISTANCE_ERROR * reach;
     if !truth.is_within((distance + DISTANCE_LISTED * reach).next_up()) {
-        return Some("farther than asked".into());
+        return Some("farther than the query's distance".into());
     }
-    // A square may be no normal number.
+    // A square may be subnormal.
     let tiny = truth.to_f64() < f64::MIN_POSITIVE && (squared - truth.to_f64()).abs() <= f64::from_bits(2);
     if !(tiny || truth.is_near(squared, error)) {
         return Some(format!("squared distance {squared:e} of {:e}", truth.to_f64()));
@@ -69,32 +70,32 @@ pub fn wrong(
         return Some(format!("weights {weights:?}"));
     }
     let there = squared_at(features, points, weights);
-    // No point of the features is nearer than they are.
+    // No points of the features are closer than these.
     let least = there >= *truth;
     let found = there.to_f64() == truth.to_f64() || there.is_near(truth.to_f64(), error);
     (!least || !found).then(|| format!("weights {weights:?}, where they are {:e} apart", there.to_f64()))
 }
 
-/// What is wrong with the kernels' answer about one pair.
+/// The fault of the kernels' answer for one pair, if it has one.
 pub fn fault(
     (features, points): (Features, Points),
-    said: Option<Near>,
+    answer: Option<Near>,
     distance: f64,
     truth: &Squared,
 ) -> Option<String> {
-    match said {
+    match answer {
         None => truth.is_within(distance).then(|| "missed".into()),
-        Some(near) if near.certain && !truth.is_within(distance) => Some("certain of what is not so".into()),
+        Some(near) if near.certain && !truth.is_within(distance) => Some("a false certainty".into()),
         Some(near) => wrong((features, points), (near.squared, weights(features, near.at)), distance, truth),
     }
 }
 
-/// A body as the oracle sees it.
+/// A body for the oracle.
 pub fn shape(body: &Body) -> Shape {
     Shape { points: body.positions_t0().to_f64(), faces: body.faces().to_vec() }
 }
 
-/// All that is within the distance, exactly.
+/// All pairs within the distance, exactly.
 pub struct Truth {
     shapes: Vec<Shape>,
     distance: f64,
@@ -108,7 +109,7 @@ impl Truth {
         Truth { shapes, distance, within }
     }
 
-    /// What is wrong with an answer, and how many pairs it lists that are farther apart.
+    /// The number of listed pairs beyond the distance; the error is the fault of the answer.
     pub fn fault(&self, found: &[NearPair]) -> Result<usize, String> {
         let row = |pair: &NearPair| {
             let kind = match pair.kind {
@@ -126,18 +127,18 @@ impl Truth {
         }
         let mut beyond = 0;
         for pair in found {
-            let asked = Shape::pair(&self.shapes, row(pair));
+            let case = Shape::pair(&self.shapes, row(pair));
             let known = self.within.get(&row(pair)).cloned();
             beyond += usize::from(known.is_none());
-            let truth = known.unwrap_or_else(|| distance_squared(asked.0, asked.1));
-            let Some(places) = places(asked.0, pair.weights) else {
+            let truth = known.unwrap_or_else(|| distance_squared(case.0, case.1));
+            let Some(places) = places(case.0, pair.weights) else {
                 return Err(format!("{pair:?}: weights that do not sum to 1"));
             };
-            let said = (pair.squared_distance, places);
-            if let Some(what) = wrong(asked, said, self.distance, &truth) {
+            let reported = (pair.squared_distance, places);
+            if let Some(what) = wrong(case, reported, self.distance, &truth) {
                 return Err(format!("{pair:?}: {what}"));
             }
-            if pair.closest != named(asked.0, places) {
+            if pair.closest != named(case.0, places) {
                 return Err(format!("{pair:?}: another feature is nearest"));
             }
         }
@@ -150,7 +151,7 @@ impl Truth {
     }
 }
 
-/// The features that have a part in a point, by its weights.
+/// The closest features of a point, by its weights.
 pub fn named(features: Features, [x, y, z]: [f64; 3]) -> Closest {
     match features {
         Features::VertexFace => match [x, y, z].iter().filter(|w| **w != 0.0).count() {

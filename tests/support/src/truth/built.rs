@@ -1,4 +1,4 @@
-//! How the cubics do on motions built in integers.
+//! Accuracy of the cubics on motions built in integers.
 
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
@@ -7,26 +7,28 @@ use rand::rngs::SmallRng;
 
 use nearmiss_lab::pairs::built::{FAMILIES, Motion, REACH_F32, motion};
 
-/// What the cubic in `S` says of positions in `R`; all numbers times `scale`.
+/// The time by the cubic in `S` for positions in `R`; all numbers times `scale`.
 pub fn toi<R: Real, S: Real>(m: &Motion, face: bool, scale: f64) -> Option<S> {
     let x = |t: usize, i: usize| Vec3(m[t][i].map(|x| R::of(x as f64 * scale)));
     let p = |i: usize| Moving { t0: x(0, i), t1: x(1, i) };
     if face { vf_toi(p(0), [p(1), p(2), p(3)]) } else { ee_toi([p(0), p(1)], [p(2), p(3)]) }
 }
 
-/// How the cubic did on one family.
+/// Counts of the cubics on one family.
 #[derive(Clone, Copy, Default)]
 pub struct Count {
     pub family: usize,
     pub face: bool,
     pub asked: u32,
-    /// In f64, in f32.
+    /// Missed contacts, in f64 and in f32.
     pub missed: [u32; 2],
-    /// By more than 1e-6 in f64, 1e-3 in f32. Every motion meets at a known time, or before.
+    /// Late times, by more than 1e-6 in f64, 1e-3 in f32. Every motion meets at a known time, or
+    /// before.
     pub late: [u32; 2],
 }
 
-/// Asks `n` motions of every family and kind. f32 is asked only where it holds the numbers.
+/// Tests `n` motions of every family and kind. The f32 cubic is tested only if f32 holds the
+/// numbers.
 pub fn count(seed: u64, n: u32, reach: i64) -> Vec<Count> {
     let mut r = SmallRng::seed_from_u64(seed);
     let kinds = (0..FAMILIES.len()).flat_map(|family| [(family, true), (family, false)]);

@@ -1,4 +1,4 @@
-//! Two public pairs of frames with lists of all true contacts, and lists compared.
+//! Two public pairs of frames with lists of all true contacts, and the comparison of lists.
 
 use crate::{mesh, rows};
 use nearmiss::contacts::Kind;
@@ -8,16 +8,17 @@ use nearmiss::{Contacts, Mesh};
 /// A feature pair.
 pub type Row = (Kind, u32, u32);
 
-/// A pair of frames and what is known of it.
+/// A pair of frames and its known answers.
 pub struct Scene {
     pub name: &'static str,
     t0: &'static str,
     t1: &'static str,
     list: &'static str,
-    /// Vertex/face and edge/edge pairs without a common vertex whose swept boxes meet: counted apart, in exact boxes.
+    /// Vertex/face and edge/edge pairs without a common vertex whose swept boxes overlap: counted
+    /// separately, in exact boxes.
     pub candidates: [u64; 2],
-    /// Those whose boxes meet while the moving boxes around both triangles do: measured with tests/frames/contacts.rs, the same by
-    /// volumes that move and by such that do not.
+    /// The pairs among them whose triangles' moving boxes overlap too. Measured with
+    /// tests/frames/contacts.rs; equal for moving and other volumes.
     pub near: [u64; 2],
     /// The exact time of the first contact.
     pub earliest: f64,
@@ -75,7 +76,7 @@ pub fn found(contacts: &Contacts) -> Vec<Row> {
     contacts.contacts().iter().map(|c| (c.kind, c.feature_a, c.feature_b)).collect()
 }
 
-/// What two ascending lists do not share.
+/// Differences of two ascending lists.
 #[derive(Debug, PartialEq)]
 pub struct Difference<T> {
     /// In the truth only.
@@ -92,7 +93,8 @@ pub fn difference<T: Copy + Ord>(found: &[T], truth: &[T]) -> Difference<T> {
     Difference { missed: without(truth, found), invented: without(found, truth) }
 }
 
-/// How many contacts of both answers one reports later than the other by more than `margin`, and the most.
+/// The number of contacts of both answers that one reports later than the other by more than
+/// `margin`, and the largest delay.
 pub fn later(one: &Contacts, other: &Contacts, margin: f64) -> (usize, f64) {
     let (mut count, mut most) = (0, 0f64);
     let reference = other.contacts();

@@ -1,4 +1,4 @@
-//! Questions with exact answers.
+//! Motions and frames with exact answers.
 
 pub mod built;
 pub mod frames;

@@ -11,7 +11,7 @@ use num_traits::ToPrimitive;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// One question: vertex, then face; or two edges. Four points at 0, then at 1.
+/// One motion: a vertex, then a face; or two edges. Four points at 0, then at 1.
 pub struct Motion {
     pub points: [[f64; 3]; 8],
     pub meets: bool,
@@ -38,7 +38,7 @@ impl Motion {
         Motion { points, meets: rows[0][6].trim() == "1" }
     }
 
-    /// Whether f32 holds all coordinates, so that rounding them asks the same question.
+    /// Whether f32 holds all coordinates, so that rounding does not change the motion.
     pub fn fits_f32(&self) -> bool {
         self.points.iter().flatten().all(|x| f64::from(*x as f32) == *x)
     }
