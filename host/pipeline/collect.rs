@@ -20,7 +20,8 @@ use nearmiss_kernels::prim::near::corner_weights;
 
 /// Returns the answer of a frame, with its statistics.
 ///
-/// # Errors [`Error::OutOfMemory`]; [`Error::Interrupted`] if an interrupt ends it.
+/// # Errors
+/// [`Error::OutOfMemory`]; [`Error::Interrupted`] if an interrupt ends it.
 pub fn collect(
     (found, stages): (Found, Stages),
     query: &Query,

@@ -66,9 +66,11 @@ impl<T: Pod> List<T> {
 
     /// Sets the first entries, and their number in `counts`.
     ///
-    /// # Errors Device errors.
+    /// # Errors
+    /// Device errors.
     ///
-    /// # Panics If there are more entries than room: a fault of the caller.
+    /// # Panics
+    /// If there are more entries than room: a fault of the caller.
     pub fn put(&mut self, entries: &[T], counts: &mut Counts) -> Result<(), Error> {
         counts[self.counter] = entries.len() as u64;
         self.entries.write(entries)
@@ -119,8 +121,9 @@ pub trait GrowableOutput {
     /// Makes room for the counted entries, and an eighth more for the next frame. Returns whether
     /// the list grew.
     ///
-    /// # Errors [`Error::OutOfMemory`] if there is no memory, or the list would be longer than 32
-    /// bits can index.
+    /// # Errors
+    /// [`Error::OutOfMemory`] if there is no memory, or the list would be longer than 32 bits can
+    /// index.
     fn grow(&mut self, device: &Device, counters: &Counts) -> Result<bool, Error>;
 }
 

@@ -69,7 +69,8 @@ pub trait Pipeline: repeat::Again + submit::Submits + Send {
     /// Returns the index of a query, and allocates its memory if no query has its shape. Later
     /// frames use the numbers of this query.
     ///
-    /// # Errors [`Error::InvalidArgument`] if work cannot be divided; device errors.
+    /// # Errors
+    /// [`Error::InvalidArgument`] if work cannot be divided; device errors.
     fn take_query(&mut self, parts: &QueryParts) -> Result<usize, Error>;
     /// Moves the named bodies, in ascending order, to their new positions.
     ///
@@ -110,7 +111,8 @@ pub trait Pipeline: repeat::Again + submit::Submits + Send {
     fn after(&mut self, query: usize, rows: u64);
     /// Restricts later frames to a share.
     ///
-    /// # Errors [`Error::InvalidArgument`] if work cannot be divided; device errors.
+    /// # Errors
+    /// [`Error::InvalidArgument`] if work cannot be divided; device errors.
     fn take(&mut self, query: usize, share: Share) -> Result<(), Error>;
     /// Returns the cost of each tile of its share in the last frame, of all tiles; empty if there
     /// is one share.

@@ -103,7 +103,8 @@ pub trait BroadPhase<R: Precision>: Send {
 
     /// Reads back what the host must know of the structure just built; waits for it.
     ///
-    /// # Errors [`Error::Bug`] for an impossible value; device errors.
+    /// # Errors
+    /// [`Error::Bug`] for an impossible value; device errors.
     fn learn(&mut self) -> Result<(), Error>;
 
     /// Sets the margin: from the next fit on, volumes hold everything within `margin` of the
@@ -140,7 +141,8 @@ pub trait BroadPhase<R: Precision>: Send {
 
     /// Prepares for shares smaller than the whole.
     ///
-    /// # Errors [`Error::InvalidArgument`] if this broad phase cannot be divided; device errors.
+    /// # Errors
+    /// [`Error::InvalidArgument`] if this broad phase cannot be divided; device errors.
     fn divide(&mut self, _device: &Device) -> Result<(), Error> {
         Err(Error::InvalidArgument {
             what: "broad phase `tree` cannot be divided among several devices".into(),
@@ -174,7 +176,8 @@ pub trait BroadPhase<R: Precision>: Send {
 
     /// Returns whether the next frame can run without the host, else the reason.
     ///
-    /// # Errors The reason why it needs the host.
+    /// # Errors
+    /// The reason why it needs the host.
     fn without_host(&self) -> Result<(), &'static str> {
         Ok(())
     }

@@ -31,7 +31,7 @@ pub struct Sorted {
     /// Words that are zero before a sort: bounds of each body, counts of each byte of the codes,
     /// and the caller's words.
     begins_zero: Buffer<u64>,
-    beside: u64,
+    extra: u64,
     /// Words that are zero before a level is cut: the boxes of its runs, and counts as above.
     /// `None` if no whole level is cut.
     cuts: Option<Buffer<u64>>,
@@ -40,7 +40,7 @@ pub struct Sorted {
 
 impl Sorted {
     /// Allocates memory for the triangles of these bodies. Bodies ascend, and each has at least one
-    /// triangle. `beside` is the number of the caller's words: they are zero after every sort. The
+    /// triangle. `extra` is the number of the caller's words: they are zero after every sort. The
     /// order is for tiles, or without one for a tree.
     ///
     /// # Errors
@@ -49,7 +49,7 @@ impl Sorted {
         device: &Device,
         layout: &Layout,
         bodies: &[usize],
-        (order, beside): (Option<Order>, usize),
+        (order, extra): (Option<Order>, usize),
     ) -> Result<Self, Error> {
         let mut count = 0;
         let table = bodies.iter().map(|&body| {
@@ -60,7 +60,7 @@ impl Sorted {
         let table: Vec<TreeBody> = table.collect();
         let scratch = device.of(purpose::SCRATCH);
         let counts = BYTES.len() * words(device, count);
-        let zero = OF_A_BODY as usize * table.len() + counts + beside;
+        let zero = OF_A_BODY as usize * table.len() + counts + extra;
         let stretches = count.div_ceil(2 * cuts::RUN) as usize;
         let is_cut = order == Some(Order::Median) && count > cuts::RUN;
         let items = || scratch.buffer(count as usize);
@@ -71,7 +71,7 @@ impl Sorted {
             count,
             order,
             begins_zero: scratch.buffer(zero)?,
-            beside: beside as u64,
+            extra: extra as u64,
             cuts: is_cut.then(|| scratch.buffer(KEYS as usize * stretches + counts)).transpose()?,
             items: [items()?, items()?],
         })
@@ -184,7 +184,7 @@ impl Sorted {
     /// Returns the caller's zeroed words.
     pub fn zeroed(&self) -> Span<u64> {
         let all = self.begins_zero.span();
-        all.part(all.len() - self.beside, self.beside)
+        all.part(all.len() - self.extra, self.extra)
     }
 
     /// Returns the bodies, in the order of their triangles.

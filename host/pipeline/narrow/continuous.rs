@@ -167,9 +167,11 @@ impl ContinuousNarrow {
     /// Puts pairs, vertex/face and edge/edge, among those that [`ContinuousNarrow::solve`] tests,
     /// and their numbers in `counts`.
     ///
-    /// # Errors Device errors.
+    /// # Errors
+    /// Device errors.
     ///
-    /// # Panics If there are more pairs than room: a fault of the caller.
+    /// # Panics
+    /// If there are more pairs than room: a fault of the caller.
     pub fn put_survivors(
         &mut self,
         features: &mut Features,

@@ -62,9 +62,11 @@ impl Features {
 
     /// Puts pairs, vertex/face and edge/edge, among the candidates, and their numbers in `counts`.
     ///
-    /// # Errors Device errors.
+    /// # Errors
+    /// Device errors.
     ///
-    /// # Panics If there are more pairs than room: a fault of the caller.
+    /// # Panics
+    /// If there are more pairs than room: a fault of the caller.
     pub fn put_candidates(&mut self, [vf, ee]: [&[Pair]; 2], counts: &mut Counts) -> Result<(), Error> {
         let [vf_list, ee_list] = &mut self.candidates;
         vf_list.put(vf, counts)?;

@@ -41,14 +41,16 @@ pub trait Submits {
     /// Allocates a submission of queries that have each run a whole frame. From then on the lists
     /// do not grow until the next [`Pipeline::frame`](super::Pipeline::frame).
     ///
-    /// # Errors [`Error::InvalidArgument`] if a walk needs the host, or if the last placing read
-    /// host memory; device errors.
+    /// # Errors
+    /// [`Error::InvalidArgument`] if a walk needs the host, or if the last placing read host
+    /// memory; device errors.
     fn prepare(&mut self, queries: &[usize]) -> Result<(), Error>;
     /// Returns whether it is prepared.
     fn is_prepared(&self) -> bool;
     /// Submits the queries: positions are read again from the same addresses.
     ///
-    /// # Errors [`Error::InvalidArgument`] if it is not prepared; device errors.
+    /// # Errors
+    /// [`Error::InvalidArgument`] if it is not prepared; device errors.
     fn submit(&mut self) -> Result<(), Error>;
     /// Returns the answer of a query in the last submission. `None` if a list had too little room,
     /// or it is not prepared. Waits.

@@ -2,7 +2,7 @@
 //!
 //! A larger margin is right for every smaller one, at the cost of more candidates. Static tiles are
 //! fitted again as soon as a query needs a larger margin. They are also fitted again when the
-//! margin has exceeded twice the need for [`PATIENCE`] queries.
+//! margin has exceeded twice the need for `PATIENCE` queries.
 
 /// Number of queries in a row after which a margin that is too large shrinks. It affects no answer.
 const PATIENCE: u32 = 16;

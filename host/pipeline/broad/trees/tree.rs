@@ -193,7 +193,8 @@ impl Tree {
     /// Reads the number of levels of a tree that was just built: the only value that the host must
     /// know.
     ///
-    /// # Errors [`Error::Bug`] for invalid levels; device errors.
+    /// # Errors
+    /// [`Error::Bug`] for invalid levels; device errors.
     pub fn learn_levels(&mut self) -> Result<(), Error> {
         let levels = self.levels.read(self.levels.len())?;
         let count = levels[0] as usize;

@@ -98,7 +98,8 @@ pub trait Walk<R: Precision, V>: Send {
 
     /// Returns whether the next launch can run without the host, else the reason.
     ///
-    /// # Errors The reason why it needs the host.
+    /// # Errors
+    /// The reason why it needs the host.
     fn without_host(&self) -> Result<(), &'static str> {
         Ok(())
     }

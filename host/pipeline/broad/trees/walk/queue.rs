@@ -135,7 +135,8 @@ impl Queue {
     /// Returns whether rounds from the roots, or from a seed, can run without the host. Copies need
     /// it between rounds. Views need it until a frame has found the number of rounds.
     ///
-    /// # Errors The reason why not.
+    /// # Errors
+    /// The reason why not.
     pub fn is_planned(&self, seeded: bool) -> Result<(), &'static str> {
         match (self.shape.balance, self.plan.rounds[usize::from(seeded)]) {
             (Balance::Copy, _) => Err("traversal `queue` with balance `copy` needs the host between rounds"),
