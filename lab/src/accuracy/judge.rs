@@ -62,7 +62,7 @@ pub struct Counts {
     pub within_contract: u64,
     /// False alarms farther apart than the contract allows; 0 if the solver makes none.
     pub violations: u64,
-    /// False alarms that are certified.
+    /// Certified cases that never meet, or with a wrong time.
     pub false_certificates: u64,
     /// Cases listed as certified.
     pub certified: u64,

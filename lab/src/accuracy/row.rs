@@ -42,7 +42,7 @@ pub struct Row {
     pub within_contract: Option<u64>,
     /// False alarms farther apart than it allows.
     pub violations: Option<u64>,
-    /// Pairs that are certified and never meet, or with a wrong time.
+    /// Certified pairs that never meet, or with a wrong time.
     pub false_certificates: u64,
     /// Pairs listed as undecided.
     pub undecided: u64,
