@@ -1,4 +1,5 @@
-//! Where the solver's precision may be too below_precision for the tolerance: told from where the bodies are, once for each place.
+//! Checks whether the solver's precision is too low for the tolerance. It depends on the positions
+//! and runs once for each set of positions.
 
 use super::list::List;
 use super::narrow::NarrowContext;
@@ -13,24 +14,24 @@ use nearmiss_kernels::abi::{BelowPrecisionArgs, BodyTolerance, Hit, Span};
 use nearmiss_kernels::math::tolerance::Tolerance;
 use rayon::prelude::*;
 
-/// What may be too large for the tolerance.
+/// Pairs that may be too large for the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BelowPrecision {
-    /// Pairs of features that are listed: the kernels count them.
+    /// Listed pairs of features: the kernels count them.
     Listed {
-        /// The tolerance that was asked for.
+        /// The tolerance of the query.
         tolerance: f64,
-        /// The least part of a pair's extent that the solver can tell.
+        /// The smallest fraction of a pair's extent that the solver resolves.
         finest: f64,
     },
-    /// Pairs that are not listed, of an edge that is.
+    /// Pairs that are not listed, because of a long edge.
     Unlisted,
 }
 
 impl BelowPrecision {
-    /// The caveat of bodies where they are; `finest` is the smallest tolerance, if pairs have
-    /// several. None for an earliest query with a body that is away: the detector checks it after
-    /// the frame.
+    /// Returns the caveat for the current positions; `finest` is the smallest tolerance, if pairs
+    /// have several. Returns none for an earliest query with a device-resident body: the detector
+    /// checks it after the frame.
     pub fn of(
         bodies: &[Body],
         certified: &Certified,
@@ -45,31 +46,31 @@ impl BelowPrecision {
         is_known.then(|| BelowPrecision::of_earliest(bodies, certified, finest.is_some())).flatten()
     }
 
-    /// Of a query that lists pairs, with bodies where they are; none if no pair can be that large.
-    /// Cost: a pass over the positions.
+    /// Returns the caveat of a query that lists pairs; none if no pair can be that large. Cost: a
+    /// pass over the positions.
     fn of_listed(bodies: &[Body], certified: &Certified) -> Option<BelowPrecision> {
         let finest = finest(certified);
-        // Positive, or not asked for.
+        // Positive, or not set.
         let tolerance = certified.tolerance.filter(|t| *t > 0.0)?;
-        // How large it is where only the device knows, the kernels tell.
+        // The kernels measure the extent of a device-resident body.
         let away = bodies.iter().any(Body::is_device_resident);
         let extent = || extent(&bodies.iter().map(bounds).fold(NOTHING, union));
         (away || tolerance < finest * extent()).then_some(BelowPrecision::Listed { tolerance, finest })
     }
 
-    /// Of an earliest query, which lists no pairs, with bodies where the host knows them: whether
-    /// two bodies that may meet, or one that meets itself, have an edge too long for the tolerance
-    /// of their pairs. Bodies farther apart than pairs are tested do not count, nor does any other
-    /// body. `own` is whether each pair has its own tolerance. Cost: a pass over the positions;
-    /// over the faces of bodies whose extent is too large; and over all bodies for each that has a
-    /// long edge.
+    /// Returns the caveat of an earliest query, which lists no pairs. The host must know all
+    /// positions. The caveat holds if bodies that may meet, or one that tests itself, have an
+    /// edge too long for the tolerance of their pairs. Bodies farther apart than the tested
+    /// distance do not count. `own` is whether each pair has its own tolerance. Cost: a pass over
+    /// the positions; one over the faces of bodies whose extent is too large; and one over all
+    /// bodies for each body with a long edge.
     pub fn of_earliest(bodies: &[Body], certified: &Certified, own: bool) -> Option<BelowPrecision> {
         let tolerance =
             |a: &Body, b: &Body| if own { of_pair(a, b) } else { certified.tolerance.unwrap_or(0.0) };
-        // The smallest of all pairs: those of bodies with themselves.
+        // The smallest tolerance of all pairs is that of a body with itself.
         let positive = bodies.iter().map(|body| tolerance(body, body)).filter(|t| *t > 0.0);
         let least = positive.reduce(f64::min)?;
-        // The two ends of an edge differ from any one point by half of its length, one or the other.
+        // For any point, one end of an edge differs from it by at least half of the edge's length.
         let is_long =
             |side: f64, tolerance: f64| 0.0 < tolerance && tolerance < finest(certified) * side / 2.0;
         let boxes: Vec<Bounds> = bodies.iter().map(bounds).collect();
@@ -84,32 +85,33 @@ impl BelowPrecision {
         long.into_iter().any(has_partner).then_some(BelowPrecision::Unlisted)
     }
 
-    /// The largest coordinate of the bodies whose place the host knows.
+    /// Returns the largest coordinate of the bodies whose positions the host knows.
     pub fn largest(bodies: &[Body]) -> f64 {
         let known = bodies.iter().filter(|body| !body.is_device_resident() && body.face_count() > 0);
         known.map(|body| largest_of(&bounds(body))).fold(0.0, f64::max)
     }
 
-    /// Whether pairs may be so large, where no two coordinates differ by more than that.
+    /// Returns whether pairs may be too large if no two coordinates differ by more than `extent`.
     pub fn may_be(certified: &Certified, extent: f64) -> bool {
-        // A tolerance of 0 is never below.
+        // A tolerance of 0 is never below the precision.
         certified.tolerance.is_some_and(|tolerance| 0.0 < tolerance && tolerance < finest(certified) * extent)
     }
 }
 
-/// The least part of a pair's extent that the solver can tell.
+/// Returns the smallest fraction of a pair's extent that the solver resolves.
 fn finest(certified: &Certified) -> f64 {
     match certified.precision {
         CertifiedPrecision::F32 => f32::INCLUSION_FINEST.into(),
-        // What f32 cannot tell is asked again in f64.
+        // Pairs that f32 cannot resolve are tested again in f64.
         CertifiedPrecision::Mixed | CertifiedPrecision::F64 => f64::INCLUSION_FINEST,
     }
 }
 
-/// Has the kernels count the hits that are too large for the tolerance, where there may be such.
+/// Launches a kernel that counts the hits that are too large for the tolerance, if there may be
+/// any.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn count<R: Precision>(
     below_precision: Option<BelowPrecision>,
     tolerances: Span<BodyTolerance>,
@@ -132,11 +134,11 @@ pub fn count<R: Precision>(
 }
 
 fn point(positions: &Positions, v: u32) -> [f64; 3] {
-    // Faces were checked when the mesh was made: every vertex is there.
+    // Faces were checked when the mesh was made: every vertex exists.
     positions.get_f64(v as usize).unwrap_or_default()
 }
 
-/// The largest component of the difference of two vertices, at either end of the step.
+/// Returns the largest component of the difference of two vertices, at either end of the step.
 fn largest(ends: &[&Positions; 2], p: u32, q: u32) -> f64 {
     let apart = |positions: &Positions| {
         let (p, q) = (point(positions, p), point(positions, q));
@@ -145,7 +147,8 @@ fn largest(ends: &[&Positions; 2], p: u32, q: u32) -> f64 {
     apart(ends[0]).max(apart(ends[1]))
 }
 
-/// The longest side of a body's triangles, by the largest component and at either end of the step.
+/// Returns the longest side of a body's triangles, by the largest component, at either end of the
+/// step.
 fn longest_side(body: &Body) -> f64 {
     let ends = body.ends();
     let of_face = |&[p, q, r]: &[u32; 3]| {
@@ -154,7 +157,7 @@ fn longest_side(body: &Body) -> f64 {
     body.faces().par_iter().map(of_face).reduce(|| 0.0, f64::max)
 }
 
-/// Whether pairs of two bodies, or of a body and itself, are tested.
+/// Returns whether pairs of two bodies, or of a body and itself, are tested.
 fn may_meet(bodies: &[Body], [i, j]: [usize; 2]) -> bool {
     let [a, b] = [&bodies[i], &bodies[j]];
     if a.face_count() == 0 || b.face_count() == 0 {
@@ -167,23 +170,23 @@ fn may_meet(bodies: &[Body], [i, j]: [usize; 2]) -> bool {
     a.filter().allows(b.filter()) && !(is_static(a) && is_static(b))
 }
 
-/// A part of the largest coordinate by which boxes grow: more than what rounding adds to a volume.
+/// Growth of boxes, as a fraction of the largest coordinate: more than rounding adds to a volume.
 const ROUNDED: f64 = 1.0 / (1 << 18) as f64;
 
-/// Whether pairs of bodies in two boxes may be tested, if that is done within a distance.
+/// Returns whether pairs of bodies in two boxes may be tested, if pairs within a distance are.
 fn are_near(boxes: [&Bounds; 2], within: f64) -> bool {
     let [a, b] = boxes;
     let grown = 2.0 * within + ROUNDED * boxes.into_iter().map(largest_of).fold(0.0, f64::max);
     (0..3).all(|k| a[0][k] <= b[1][k] + grown && b[0][k] <= a[1][k] + grown)
 }
 
-/// The largest coordinate in a box.
+/// Returns the largest coordinate in a box.
 fn largest_of(bounds: &Bounds) -> f64 {
     bounds.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()))
 }
 
-/// A box around a body in the step. What no face uses counts too; of rigid bodies it is at least as
-/// large as they are.
+/// Returns a box around a body in the step. Vertices that no face uses count too. A rigid body's
+/// box is at least as large as the body.
 fn bounds(body: &Body) -> Bounds {
     body.posed_box().unwrap_or_else(|| {
         body.ends().into_iter().fold(NOTHING, |bounds, positions| {
@@ -196,7 +199,7 @@ fn bounds(body: &Body) -> Bounds {
     })
 }
 
-/// The largest difference of coordinates in a box: no pair in it is larger.
+/// Returns the largest difference of coordinates in a box: no pair in it is larger.
 fn extent(bounds: &Bounds) -> f64 {
     (0..3).map(|k| bounds[1][k] - bounds[0][k]).fold(0.0, f64::max)
 }

@@ -1,4 +1,5 @@
-//! Lists of the device become an answer: in canonical order and in the numbering of the bodies.
+//! Collect: lists of the device become an answer, in canonical order and with the indices of each
+//! body.
 
 mod features;
 
@@ -17,10 +18,10 @@ use nearmiss_kernels::abi::{Hit, NearHit, NearestHit, Pair, counter};
 use nearmiss_kernels::prim::inclusion::Verdict;
 use nearmiss_kernels::prim::near::corner_weights;
 
-/// The answer of a frame, with its figures.
+/// Returns the answer of a frame, with its statistics.
 ///
 /// # Errors
-/// [`Error::OutOfMemory`]; [`Error::Interrupted`] if a look ends it.
+/// [`Error::OutOfMemory`]; [`Error::Interrupted`] if an interrupt ends it.
 pub fn collect(
     (found, stages): (Found, Stages),
     query: &Query,
@@ -61,7 +62,7 @@ pub fn collect(
     if looks.ended() { Err(Error::Interrupted) } else { Ok(contacts) }
 }
 
-/// The rows of the answer. A part of them if a look ends it.
+/// Returns the rows of the answer; a part of them if an interrupt ends it.
 fn rows(found: &Found, layout: &Layout, looks: &Looks) -> Rows {
     match &found.listed {
         Listed::Earliest { toi, .. } => Rows::Earliest(*toi),
@@ -106,7 +107,8 @@ fn rows(found: &Found, layout: &Layout, looks: &Looks) -> Rows {
     }
 }
 
-/// What the kernels found, in canonical order and in the numbering of the bodies. No answer if a look ends it.
+/// Returns the kernels' hits in canonical order, with the indices of each body; an empty list if an
+/// interrupt ends it.
 fn near_pairs(hits: &Hits<NearHit>, ordered: bool, layout: &Layout, looks: &Looks) -> Vec<NearPair> {
     let [of_vf, of_ee] = hits.each();
     let vf = |hit: &NearHit| near_pair(vertex_face(layout, [hit.a, hit.b]), hit);
@@ -120,7 +122,7 @@ fn near_pairs(hits: &Hits<NearHit>, ordered: bool, layout: &Layout, looks: &Look
     pairs
 }
 
-/// Two features within a distance.
+/// Returns two features within a distance.
 fn near_pair((kind, bodies, [a, b]): Features, hit: &NearHit) -> NearPair {
     let weights = if kind == Kind::Ee {
         edge_weights(hit.at)
@@ -132,14 +134,14 @@ fn near_pair((kind, bodies, [a, b]): Features, hit: &NearHit) -> NearPair {
     NearPair { kind, bodies, feature_a: a, feature_b: b, squared_distance: hit.squared, weights, closest }
 }
 
-/// The nearest triangles, in the numbering of the bodies.
+/// Returns the nearest triangles, with the indices of each body.
 fn nearest_triangles(hit: &NearestHit, layout: &Layout) -> NearestTriangles {
     let [(a, p), (b, q)] = [hit.a, hit.b].map(|triangle| layout.locate(triangle, |at| at.triangle));
     let NearestHit { distance, at, points, .. } = *hit;
     NearestTriangles { bodies: [a, b], triangles: [p, q], distance, weights: at.map(corner_weights), points }
 }
 
-/// All that holds of a frame, as the kernels counted.
+/// Returns all caveats of a frame, from the kernels' counters.
 fn caveats(found: &Found) -> Vec<Caveat> {
     let mut all = Vec::new();
     let count = |which| found.counters[which];
@@ -161,13 +163,13 @@ fn caveats(found: &Found) -> Vec<Caveat> {
     all
 }
 
-/// Figures of the front.
+/// Returns the statistics of the front.
 fn front(counters: &Counts) -> Front {
     let of = |which| counters[which];
     Front { pairs: of(counter::ENDS), tests: of(counter::FRONT_TESTS), pruned: of(counter::PRUNED) }
 }
 
-/// Figures of the work queues.
+/// Returns the statistics of the work queues.
 fn queues(counters: &Counts) -> Queues {
     let of = |which| counters[which];
     Queues {

@@ -1,4 +1,4 @@
-//! The counters of a frame, and what they came to.
+//! The counters of a frame, and their values.
 
 use super::purpose;
 use crate::device::{Ahead, Buffer, Device};
@@ -6,14 +6,14 @@ use crate::error::Error;
 use nearmiss_kernels::abi::{Counter, Counters, counter};
 use std::ops::{Index, IndexMut};
 
-/// What each counter of a frame came to, by its name.
+/// The value of each counter of a frame, indexed by its name.
 ///
 /// ```
 /// use nearmiss::pipeline::counts::Counts;
 /// use nearmiss_kernels::abi::counter;
 /// assert_eq!(Counts::default()[counter::PAIRS], 0);
 /// ```
-/// No number names one:
+/// A number is no index:
 /// ```compile_fail,E0277
 /// let pairs = nearmiss::pipeline::counts::Counts::default()[0];
 /// ```
@@ -21,7 +21,7 @@ use std::ops::{Index, IndexMut};
 pub struct Counts([u64; counter::COUNT]);
 
 impl Default for Counts {
-    /// Nothing was counted.
+    /// Returns counts that are all zero.
     fn default() -> Self {
         Counts([0; counter::COUNT])
     }
@@ -40,11 +40,11 @@ impl IndexMut<Counter> for Counts {
     }
 }
 
-/// The counters of a frame, in a device's memory.
+/// The counters of a frame, in device memory.
 pub struct FrameCounters(Buffer<u64>);
 
 impl FrameCounters {
-    /// Takes the memory; what is in it is unknown.
+    /// Allocates the counters; their values are undefined.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -52,38 +52,38 @@ impl FrameCounters {
         device.of(purpose::COUNTERS).buffer(counter::COUNT).map(FrameCounters)
     }
 
-    /// What a kernel is given.
+    /// Returns the counters as kernel arguments.
     pub fn counters(&self) -> Counters {
         Counters::new(self.0.span())
     }
 
-    /// Sets all to zero.
+    /// Sets all counters to zero.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn clear(&mut self) -> Result<(), Error> {
         self.0.clear()
     }
 
-    /// Sets all.
+    /// Sets all counters.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn write(&mut self, counts: &Counts) -> Result<(), Error> {
         self.0.write(&counts.0)
     }
 
-    /// What they came to; waits for what was launched.
+    /// Returns the values; waits for earlier launches.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn read(&self) -> Result<Counts, Error> {
         let mut counts = Counts::default();
         counts.0.copy_from_slice(&self.0.read(counter::COUNT)?);
         Ok(counts)
     }
 
-    /// All of them, to be read ahead.
+    /// Returns all counters, to be read ahead.
     pub fn ahead(&self) -> Ahead<'_> {
         self.0.ahead(counter::COUNT)
     }

@@ -1,4 +1,4 @@
-//! How large an answer becomes: counted before it is made, so that one without room is refused
+//! The size of an answer, counted before the answer is made. An answer without room is refused
 //! early.
 
 use super::counts::Counts;
@@ -10,34 +10,33 @@ use crate::query::{ListedRows, Query};
 use crate::scene::CollisionFilter;
 use nearmiss_kernels::abi::{BodyRecord, Counter, EVERY, counter};
 
-/// Smaller answers are not compared with the memory that is free, in bytes.
+/// Least size in bytes of an answer that is compared with free memory.
 const LITTLE: u64 = 16 << 20;
-/// ListedRows that a candidate pair of triangles has in an answer of features, if all of them meet:
-/// 1 / 2 + 9 / 4 in a closed mesh, more in a soup. It decides when rows are counted on the host,
-/// and nothing else.
+/// Rows of an answer of features per candidate pair of triangles, if all of its features meet: 1 /
+/// 2 + 9 / 4 in a closed mesh, more in a soup. It only decides when rows are counted on the host.
 const ROWS_A_PAIR: u64 = 4;
 /// Triangles of the smallest group.
 const GROUP: usize = 16;
 /// Most pairs of groups that are compared.
 const COMPARED: u64 = 1 << 24;
-/// What a distance is reduced by, in parts, so that no rounding of boxes and kernels lists less.
+/// Factor that reduces a distance, so that rounding of boxes and kernels cannot list less.
 const CERTAIN: f64 = 1.0 - 1e-6;
 
-/// What is known of the answer's size.
+/// Bounds of the answer's size.
 #[derive(Default)]
 pub struct Demand {
-    /// Bytes of a row; 0 of queries that list nothing.
+    /// Bytes of a row; 0 for queries that list no rows.
     row: u64,
     counters: &'static [Counter],
-    /// Every pair of features that is as near at the start of the step is listed.
+    /// Distance within which, at the start of the step, every pair of features is listed.
     within: Option<f64>,
     advice: &'static str,
-    /// ListedRows that earlier slices have found.
+    /// Rows that earlier slices have found.
     pub before: u64,
 }
 
 impl Demand {
-    /// Of a query, whose tolerance was chosen.
+    /// Returns the demand of a query whose tolerance was chosen.
     pub fn new(query: &Query) -> Demand {
         let Some(ListedRows { bytes, within, advice }) = query.rows() else { return Demand::default() };
         let counters: &[Counter] = if query.kind().is_of_features() {
@@ -48,7 +47,8 @@ impl Demand {
         Demand { row: bytes as u64, counters, within, advice, before: 0 }
     }
 
-    /// Bytes that the rows of all slices may have: what those before have, and what is free.
+    /// Returns the bytes available for rows of all slices: those of earlier slices, and free
+    /// memory.
     fn room(&self, rows: u64, device: &Device) -> u64 {
         let held = self.before.saturating_mul(self.row);
         let more = rows.saturating_sub(self.before).saturating_mul(self.row);
@@ -56,8 +56,8 @@ impl Demand {
         held.saturating_add(free).min(device.answers())
     }
 
-    /// Refuses an answer of at least so many rows, with those of slices before, if there is no room
-    /// for it.
+    /// Refuses an answer of at least `rows` rows, earlier slices included, if there is no room for
+    /// it.
     fn fits(&self, rows: u64, device: &Device) -> Result<(), Error> {
         let (asked, given) = (rows.saturating_mul(self.row), self.room(rows, device));
         if asked <= given {
@@ -66,7 +66,7 @@ impl Demand {
         Err(Error::AnswerTooLarge { pairs: rows, asked, given, advice: self.advice })
     }
 
-    /// Refuses what was counted so far, if there is no room for it.
+    /// Refuses the rows counted so far, if there is no room for them.
     ///
     /// # Errors
     /// [`Error::AnswerTooLarge`].
@@ -75,7 +75,7 @@ impl Demand {
         self.fits(rows, device)
     }
 
-    /// Refuses an answer by what is certainly in it, if so many candidate pairs of triangles may
+    /// Refuses an answer by a lower bound of its rows, if so many candidate pairs of triangles may
     /// make it too large.
     ///
     /// # Errors
@@ -96,14 +96,14 @@ impl Demand {
     }
 }
 
-/// Triangles that lie together: a box around them, and what they own.
+/// Triangles that are neighbours: a box around them, and the features that they own.
 struct Group {
     low: [f64; 3],
     high: [f64; 3],
     vertices: u64,
     edges: u64,
     faces: u64,
-    /// The first of two groups that it consists of.
+    /// Index of its first half, if it is divided.
     parts: Option<usize>,
 }
 
@@ -131,7 +131,7 @@ impl Group {
         })
     }
 
-    /// Squares of the least and the greatest distance of two points, one of each.
+    /// Returns the squares of the least and the greatest distance of two points, one of each group.
     fn apart(&self, other: &Group) -> [f64; 2] {
         let square = |axis: usize, of: fn(f64, f64) -> f64| {
             let [one, two] = [self.high[axis] - other.low[axis], other.high[axis] - self.low[axis]];
@@ -143,9 +143,10 @@ impl Group {
     }
 }
 
-/// Groups of a body's triangles, halves of halves; the number of the first.
+/// Divides a body's triangles into groups, by halves of halves. Returns the index of the first
+/// group.
 fn groups(triangles: &mut [u32], all: &mut Vec<Group>, (layout, positions): (&Layout, &[[f64; 3]])) -> usize {
-    // Halves are added in pairs, so a group knows both by the first.
+    // Halves are added in pairs, so the index of the first gives both.
     let own = all.len();
     all.push(Group::of(triangles, layout, positions));
     let mut waiting = vec![(own, triangles)];
@@ -168,7 +169,7 @@ fn groups(triangles: &mut [u32], all: &mut Vec<Group>, (layout, positions): (&La
     own
 }
 
-/// Whether two bodies, or a body and itself, are tested.
+/// Returns whether two bodies, or a body and itself, are tested.
 fn may_meet(layout: &Layout, a: usize, b: usize) -> bool {
     let is_static = |body| layout.trees[1].contains(&body);
     if a == b {
@@ -182,7 +183,8 @@ fn may_meet(layout: &Layout, a: usize, b: usize) -> bool {
     meets(a).allows(&meets(b)) && !(is_static(a) && is_static(b))
 }
 
-/// A number of pairs of features that are certainly within a distance, and have no common vertex.
+/// Returns a number of pairs of features that are certainly within a distance, and have no common
+/// vertex.
 fn least(layout: &Layout, positions: &[[f64; 3]], within: f64) -> u64 {
     let mut all = Vec::new();
     let roots: Vec<(usize, usize)> = (0..layout.bodies())
@@ -227,7 +229,7 @@ fn least(layout: &Layout, positions: &[[f64; 3]], within: f64) -> u64 {
     rows.saturating_sub(tested.map(|body| adjacent(layout, body)).sum())
 }
 
-/// Pairs of features of a body with a common vertex, at most.
+/// Returns an upper bound of a body's pairs of features with a common vertex.
 fn adjacent(layout: &Layout, body: usize) -> u64 {
     let [start, end] = [layout.starts[body], layout.starts[body + 1]];
     let mut edges_at = vec![0u64; (end.vertex - start.vertex) as usize];
@@ -249,7 +251,7 @@ mod tests {
         bodies.iter().flat_map(|body| body.positions_t0().to_f64()).collect()
     }
 
-    /// Rows that are certain, and all that there are.
+    /// Returns the number of certain rows, and that of all rows.
     fn rows(bodies: Vec<Body>, distance: f64) -> (u64, u64) {
         let query = Query::near(distance);
         let layout = Layout::new(&bodies, query.kind());
@@ -274,7 +276,7 @@ mod tests {
                 some += u64::from(certain > 0);
             }
             assert!(some > 0, "some are certain before all are");
-            // Soups share no vertex between triangles: what is counted as adjacent is.
+            // Soups share no vertex between triangles, so every adjacent pair is counted.
             let (certain, found) = rows(bodies(meets), 1e3);
             assert_eq!(certain, found);
         }
@@ -288,7 +290,7 @@ mod tests {
         let tested = |a, b| may_meet(&layout, a, b);
         assert!(!tested(0, 0) && !tested(0, 1) && tested(0, 2) && tested(1, 2));
         let whole = least(&layout, &points(&bodies), 1e3);
-        // 90 vertices, 30 faces and 90 edges of each fixed one, 120, 40 and 120 of the other.
+        // Each fixed body has 90 vertices, 30 faces and 90 edges; the other has 120, 40 and 120.
         let of_two = 90 * 40 + 120 * 30 + 90 * 120;
         let own = if tested(2, 2) { 120 * 40 + 120 * 119 / 2 } else { 0 };
         let common = if tested(2, 2) { adjacent(&layout, 2) } else { 0 };

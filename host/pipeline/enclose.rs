@@ -1,4 +1,5 @@
-//! Does every node of a tree hold everything below it, frame after frame? Asked exactly, of each volume, on any machine.
+//! Checks that every node of a tree holds everything below it, in every frame. The check is exact,
+//! for each volume, on any machine.
 
 use super::broad::trees::{Tree, TreeSpec, Volumes};
 use super::layout::Layout;
@@ -11,7 +12,7 @@ use nearmiss_kernels::bv::Axes;
 use nearmiss_kernels::entry::Kernels;
 use nearmiss_kernels::math::Vec3;
 
-/// Ways to go from a point, of a length just below 1: so that a coordinate of f64 may round on its way.
+/// Directions from a point, of a length just below 1: so that a coordinate in f64 may round.
 const WAYS: [[f64; 3]; 7] = {
     const L: f64 = 1.0 - 1e-6;
     const S: f64 = L / 3.0;
@@ -26,25 +27,25 @@ const WAYS: [[f64; 3]; 7] = {
     ]
 };
 
-/// A tree that is built once and refitted to frame after frame.
+/// A tree that is built once and refitted in each frame.
 pub struct Enclosed<R: Precision, V: Kernels> {
     device: Device,
     triangles: Vec<[u32; 3]>,
     faces: Buffer<[u32; 3]>,
     still: Buffer<Point<R>>,
     moving: Buffer<VertexMotion<R>>,
-    /// What lies on the device, and whether it moves.
+    /// Positions on the device, and whether they move.
     at: (Vec<[Vec3<R>; 2]>, bool),
     tree: Tree,
     volumes: Volumes<V>,
 }
 
 impl<R: Precision, V: Kernels> Enclosed<R, V> {
-    /// Builds the tree for where the vertices are: of at least one triangle. `t1` is empty where nothing moves; volumes grow
-    /// by `margin`.
+    /// Builds the tree for these positions, over at least one triangle. `t1` is empty if nothing
+    /// moves; volumes grow by `margin`.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new(
         device: &Device,
         triangles: &[[u32; 3]],
@@ -92,7 +93,7 @@ impl<R: Precision, V: Kernels> Enclosed<R, V> {
     /// Fits and refits all volumes to another frame.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn move_to(&mut self, t0: &[Vec3<R>], t1: &[Vec3<R>]) -> Result<(), Error> {
         self.place(t0, t1)?;
         let (frames, faces) = (self.frames(), self.faces.span());
@@ -100,11 +101,12 @@ impl<R: Precision, V: Kernels> Enclosed<R, V> {
         self.volumes.refit(&self.device, &self.tree, frames, faces)
     }
 
-    /// Pairs of a node and a corner of a triangle below it around which it does not hold everything within `near` all of the
-    /// time, after `fault`. Cost: each corner against each node above it, in exact arithmetic on the host.
+    /// Counts the violations after `fault`. A violation is a node with a corner of a triangle below
+    /// it: the node does not hold everything within `near` of that corner at all times. Cost: each
+    /// corner against each node above it, in exact arithmetic on the host.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn outside(&self, near: f32, fault: impl Fn(&mut [Node<V>])) -> Result<usize, Error> {
         let ways = &WAYS[..if near > 0.0 { WAYS.len() } else { 1 }];
         let (mut nodes, links) = (self.volumes.download()?, self.tree.download()?);
@@ -132,10 +134,10 @@ impl<R: Precision, V: Kernels> Enclosed<R, V> {
         Ok(outside)
     }
 
-    /// Checks the volumes against what they are merged of and fitted to.
+    /// Checks the volumes against the children and the points that they were made from.
     ///
     /// # Errors
-    /// [`Error::Bug`] with the first violation; those of the device.
+    /// [`Error::Bug`] with the first violation; device errors.
     #[cfg(test)]
     fn check(&self) -> Result<(), Error> {
         let frame = |k: usize| self.at.0.iter().map(|p| p[k]).collect::<Vec<_>>();
@@ -152,7 +154,7 @@ mod tests {
     use crate::samples::{sheet, soup};
     use crate::scene::Body;
 
-    /// A body's positions, one frame or two, turned and put elsewhere so that f64 is not f32.
+    /// Returns a body's positions, one frame or two, rotated and moved so that f64 is not f32.
     fn frames<R: Precision>(body: &Body, size: f64, at: f64) -> [Vec<Vec3<R>>; 2] {
         let moved = |[x, y, z]: [f64; 3]| {
             Vec3([0.6 * x - 0.8 * y, 0.8 * x + 0.6 * y, z + x / 3.0].map(|x| R::of(size * x + at)))
@@ -161,7 +163,7 @@ mod tests {
         [of(body.positions_t0()), body.positions_t1().map_or(Vec::new(), of)]
     }
 
-    /// Of volumes that were told to grow by `margin`.
+    /// Counts the violations of volumes that grow by `margin`.
     fn outside<R: Precision, V: Kernels>(
         body: &Body,
         (size, at): (f64, f64),
@@ -177,7 +179,7 @@ mod tests {
         enclosed.outside(near, fault).expect("nodes")
     }
 
-    /// Every check of a volume.
+    /// The test for one volume type.
     struct All;
 
     impl WithVolume for All {
@@ -206,13 +208,13 @@ mod tests {
             let out = |margin| outside::<R, V>(&body, place, (refit, axes), (margin, near), |_| ());
             assert_eq!(out(near), 0, "{refit:?}, {place:?}: what is near is held as well");
             assert!(out(0.0) > 0, "{refit:?}, {place:?}: forgotten growth is noticed");
-            // Far from the origin a hundredth of it is less than what bounds are rounded by.
+            // Far from the origin a hundredth of the growth is less than the rounding of bounds.
             assert!(
                 place.1 > 0.0 || out(0.99 * near) > 0,
                 "{refit:?}, {place:?}: too little growth is noticed"
             );
         }
-        // A node with its left child's volume: what is below the right one shows.
+        // A node with its left child's volume: it does not hold the right one.
         let few = outside::<R, V>(&body, (1.0, 0.0), (Refit::Levels, axes), (0.0, 0.0), |nodes| {
             let at = (ROOT as usize..nodes.len()).rfind(|&at| !nodes[at].is_leaf()).expect("an inner node");
             nodes[at].volume = nodes[nodes[at].link as usize].volume;

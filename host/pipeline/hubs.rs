@@ -1,12 +1,15 @@
-//! Hubs: vertices of so many faces that pairs of these would be most of the work. See `nearmiss_kernels::bvh::filter`.
+//! Hubs: vertices with so many faces that pairs of these would be most of the work. See
+//! `nearmiss_kernels::bvh::filter`.
 
 use nearmiss_kernels::bvh::tiles::TILE;
 
-/// Faces that a hub has at least: those of a tile. Fewer make no tile, and no subtree worth a cut.
+/// Least number of faces of a hub: those of a tile. Fewer faces fill no tile, and no subtree worth
+/// a cut.
 pub const FACES: u32 = TILE;
 
-/// The vertex of each face's hub and one; 0 without a hub. Among several hubs the one of the most faces, then the first: so
-/// the faces round a hub name it, also if a few of them touch another. Nothing at all without hubs. Cost: linear.
+/// Returns each face's hub, as its vertex plus one; 0 without a hub. Among several hubs the one
+/// with most faces wins, then the first. So faces round a hub name it, even if a few of them touch
+/// another. The list is empty if there is no hub. Cost: linear.
 pub fn of(faces: &[[u32; 3]], vertices: usize) -> Vec<u32> {
     let mut valences = vec![0u32; vertices];
     for &v in faces.iter().flatten() {
@@ -27,7 +30,7 @@ pub fn of(faces: &[[u32; 3]], vertices: usize) -> Vec<u32> {
 mod tests {
     use super::*;
 
-    /// Faces round `hub`, with a rim of vertices from `first` on.
+    /// Returns faces round `hub`, with a rim of vertices from `first` on.
     fn fan(hub: u32, first: u32, faces: u32) -> impl Iterator<Item = [u32; 3]> {
         (0..faces).map(move |k| [first + k, hub, first + (k + 1) % faces])
     }
@@ -44,7 +47,8 @@ mod tests {
 
     #[test]
     fn a_face_names_the_larger_of_two_hubs() {
-        // A bicone of 40 faces a side, and a fan of 50 whose hub and first rim vertex are both apexes.
+        // A bicone of 40 faces a side, and a fan of 50 with both apexes: one its hub, one its first
+        // rim vertex.
         let rim = 3;
         let faces: Vec<_> = fan(0, rim, 40).chain(fan(1, rim, 40)).chain([[0, 1, 2]]).collect();
         let hubs = of(&faces, 43);

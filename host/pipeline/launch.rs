@@ -1,39 +1,42 @@
-//! Launches, by how many blocks a kernel gets. The one place that vouches for what the kernels of a frame are given.
+//! Launches, by the number of blocks. The only place that vouches for the arguments of a frame's
+//! kernels.
 
 use crate::device::Device;
 use crate::error::Error;
 use nearmiss_kernels::entry::Entry;
 
-/// So many blocks.
+/// Launches a number of blocks.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn blocks<E: Entry>(device: &Device, blocks: u32, args: &E::Args) -> Result<(), Error> {
-    // SAFETY: the stages make their arguments of buffers of this device that the pipeline holds, as the kernel's card asks
-    // under "Before"; a buffer that is dropped waits for the launches before.
+    // SAFETY: the stages make their arguments of buffers of this device that the pipeline holds, as
+    // the kernel's header requires under "Before"; a buffer that is dropped waits for the launches
+    // before.
     unsafe { device.launch::<E>(blocks, args) }
 }
 
-/// A lane for each of `items` items.
+/// Launches a lane for each of `items` items.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn each<E: Entry>(device: &Device, items: usize, args: &E::Args) -> Result<(), Error> {
     blocks::<E>(device, device.blocks_for::<E>(items), args)
 }
 
-/// Enough to fill the machine, for up to `capacity` items over which the kernel strides.
+/// Launches enough blocks to fill the machine, for up to `capacity` items over which the kernel
+/// strides.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn striding<E: Entry>(device: &Device, capacity: usize, args: &E::Args) -> Result<(), Error> {
     blocks::<E>(device, device.blocks_striding::<E>(capacity), args)
 }
 
-/// As many as run at once, for up to `capacity` items that lanes draw until there are no more.
+/// Launches as many blocks as run at once, for up to `capacity` items that lanes draw one by one.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn at_once<E: Entry>(device: &Device, capacity: usize, args: &E::Args) -> Result<(), Error> {
     blocks::<E>(device, device.blocks_at_once::<E>(capacity)?, args)
 }

@@ -1,4 +1,4 @@
-//! Where each body lies in the memory that all bodies share.
+//! The place of each body in the memory that all bodies share.
 
 use super::hubs;
 use crate::mesh::Topology;
@@ -8,7 +8,7 @@ use nearmiss_emulator::Looks;
 use nearmiss_kernels::abi::{BodyRecord, EVERY, NodeFilter};
 use std::sync::Arc;
 
-/// The indices of one body: its own plus these.
+/// Offsets of a body's indices in the layout.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Offsets {
     /// First vertex.
@@ -19,44 +19,48 @@ pub struct Offsets {
     pub edge: u32,
 }
 
-/// Topology of all bodies in one numbering, body after body. Layouts for several queries of one scene share the long lists.
+/// Topology of all bodies in one numbering, body after body. Layouts for several queries of one
+/// scene share the long lists.
 #[derive(Clone, Default)]
 pub struct Layout {
-    /// Where each body begins, and at the end where the last one ends. Edges are numbered if the layout has features.
+    /// Start of each body, then the end of the last. Edges are numbered if the layout has features.
     pub starts: Vec<Offsets>,
     /// Vertex indices of every triangle.
     pub faces: Arc<Vec<[u32; 3]>>,
     /// Edges and owners; empty without a query of features.
     pub features: Arc<FeatureTopology>,
-    /// What kernels know of each body.
+    /// Records of the bodies for the kernels.
     pub records: Vec<BodyRecord>,
-    /// The [`NodeFilter::hub`] of each triangle, if pairs round a hub are no candidates; empty without hubs.
+    /// The [`NodeFilter::hub`] of each triangle, if pairs round a hub are no candidates; empty
+    /// without hubs.
     pub hubs: Arc<Vec<u32>>,
-    /// The same where they are, so that only their rims tell pairs apart; empty without hubs.
+    /// Hubs of each triangle if pairs round a hub are candidates, so that only the rims exclude
+    /// pairs; empty without hubs.
     pub rims: Arc<Vec<u32>>,
     /// The bodies with triangles that may move, and those that are static.
     pub trees: [Vec<usize>; 2],
 }
 
-/// Edges of all bodies, and the features that each triangle stands for.
+/// Edges of all bodies, and the features that each triangle owns.
 #[derive(Clone, Default)]
 pub struct FeatureTopology {
     /// End points of every edge.
     pub edges: Vec<[u32; 2]>,
     /// Edges of every triangle.
     pub face_edges: Vec<[u32; 3]>,
-    /// Features that each triangle stands for.
+    /// Features that each triangle owns.
     pub owners: Vec<u32>,
 }
 
 impl Layout {
-    /// Lays bodies one behind the other for a query of that kind; edges only if the query needs them.
+    /// Lays out bodies for a kind of query, one behind the other; numbers edges only if the query
+    /// needs them.
     pub fn new(bodies: &[Body], kind: QueryKind) -> Layout {
-        // Nothing ends it.
+        // No interrupt ends it.
         Layout::within(bodies, kind, &Looks::new(None)).unwrap_or_default()
     }
 
-    /// The same, of work that may be ended early: `None` if it was.
+    /// As [`Layout::new`], for work that may be interrupted: `None` if it was.
     pub fn within(bodies: &[Body], kind: QueryKind, looks: &Looks) -> Option<Layout> {
         let mut all = Layout { starts: vec![Offsets::default()], ..Layout::default() };
         let mut at = Offsets::default();
@@ -87,14 +91,15 @@ impl Layout {
         if kind.is_of_features() { all.with_features(bodies, looks) } else { Some(all) }
     }
 
-    /// The same with edges and owners, of the same bodies; `None` if the work was ended early. Cost: linear in triangles.
+    /// Adds edges and owners of the same bodies; `None` if the work was interrupted. Cost: linear
+    /// in triangles.
     pub fn with_features(mut self, bodies: &[Body], looks: &Looks) -> Option<Layout> {
         let mut features = FeatureTopology::default();
         for (i, body) in bodies.iter().enumerate() {
             let own = Topology::within(body.faces(), body.vertex_count(), looks)?;
             let (vertex, edge) = (self.starts[i].vertex, features.edges.len() as u32);
             features.edges.extend(own.edges.iter().map(|edge| edge.map(|v| v + vertex)));
-            // An edge that does not exist is owned by nobody, so its number is never used.
+            // An edge that does not exist has no owner, so its number is never used.
             let numbered = |face: &[u32; 3]| face.map(|e| e.saturating_add(edge));
             features.face_edges.extend(own.face_edges.iter().map(numbered));
             features.owners.extend(&own.owners);
@@ -104,7 +109,7 @@ impl Layout {
         Some(self)
     }
 
-    /// The layout of the same bodies for a query of another kind, without hubs.
+    /// Returns the layout of the same bodies for a query of another kind, without hubs.
     pub fn seen_by(&self, bodies: &[Body], kind: QueryKind) -> Layout {
         let mut layout = Layout { hubs: Arc::default(), rims: Arc::default(), ..self.clone() };
         for (record, body) in layout.records.iter_mut().zip(bodies) {
@@ -113,12 +118,12 @@ impl Layout {
         layout
     }
 
-    /// Whether edges are numbered.
+    /// Returns whether edges are numbered.
     pub fn has_features(&self) -> bool {
         !self.features.owners.is_empty()
     }
 
-    /// Of one body alone of so many triangles, to build a tree over them.
+    /// Returns the layout of one body of `triangles` triangles, to build a tree over it.
     pub fn single(triangles: u32) -> Layout {
         Layout {
             starts: vec![Offsets::default(), Offsets { triangle: triangles, ..Offsets::default() }],
@@ -128,8 +133,8 @@ impl Layout {
         }
     }
 
-    /// Finds the hubs of bodies that are tested against themselves, for a query that keeps adjacent pairs or not. Cost:
-    /// linear.
+    /// Finds the hubs of bodies that are tested against themselves. `keeps_adjacent` is whether the
+    /// query keeps adjacent pairs. Cost: linear.
     pub fn find_hubs(&mut self, keeps_adjacent: bool) {
         let own = |record: &BodyRecord| record.self_collision != 0;
         if !self.records.iter().any(own) {
@@ -139,7 +144,7 @@ impl Layout {
         let mut hubs = hubs::of(&self.faces, vertices);
         for body in (0..self.bodies()).filter(|&body| !own(&self.records[body])) {
             let (first, count) = self.triangles(body);
-            // Nothing where there is no hub at all.
+            // The list is empty if there is no hub at all.
             if let Some(others) = hubs.get_mut(first as usize..(first + count) as usize) {
                 others.fill(0);
             }
@@ -149,35 +154,36 @@ impl Layout {
         }
     }
 
-    /// How many bodies there are.
+    /// Returns the number of bodies.
     pub fn bodies(&self) -> usize {
         self.starts.len() - 1
     }
 
-    /// Whether anything may meet: something moves, and there is something else or it is tested against itself.
+    /// Returns whether anything may meet. One body must move; it needs another body, or is tested
+    /// against itself.
     pub fn may_meet(&self) -> bool {
         let [moving, fixed] = &self.trees;
         let alone = moving.len() == 1 && fixed.is_empty();
         !moving.is_empty() && (!alone || self.records[moving[0]].self_collision != 0)
     }
 
-    /// Whether which pairs are tested depends on their bodies, or on hubs.
+    /// Returns whether the tested pairs depend on their bodies, or on hubs.
     pub fn has_filters(&self) -> bool {
         self.has_several() || !self.hubs.is_empty()
     }
 
-    /// Whether several bodies have triangles.
+    /// Returns whether several bodies have triangles.
     pub fn has_several(&self) -> bool {
         self.trees.iter().map(Vec::len).sum::<usize>() > 1
     }
 
-    /// Whether it hangs on groups, too.
+    /// Returns whether the tested pairs depend on groups, too.
     pub fn has_groups(&self) -> bool {
         let all = |record: &BodyRecord| record.group == u32::MAX && record.mask == u32::MAX;
         !self.records.iter().all(all)
     }
 
-    /// Whose each triangle is, as kernels ask.
+    /// Returns the filter of each triangle, as kernels read it.
     pub fn whose(&self) -> impl Iterator<Item = NodeFilter> {
         let of = move |body: usize| {
             let (first, count) = self.triangles(body);
@@ -189,19 +195,21 @@ impl Layout {
         (0..self.bodies()).flat_map(of)
     }
 
-    /// How many triangles may move. Every candidate has one of them.
+    /// Returns how many triangles may move. Every candidate has one of them.
     pub fn moving_triangles(&self) -> usize {
         self.trees[0].iter().map(|&body| self.triangles(body).1 as usize).sum()
     }
 
-    /// The body that has an index of all, and the index there; `of` tells which kind of index.
+    /// Returns the body of an index in the layout, and the index in the body; `of` selects the kind
+    /// of index.
     pub fn locate(&self, index: u32, of: impl Fn(&Offsets) -> u32) -> (BodyId, u32) {
-        // Of bodies without such a feature, which begin where the next one does, the last is it.
+        // Bodies without such a feature start where the next one does, so the last of them is the
+        // owner.
         let body = self.starts.partition_point(|start| of(start) <= index) - 1;
         (BodyId(body as u32), index - of(&self.starts[body]))
     }
 
-    /// The triangles of a body: first, and how many.
+    /// Returns the triangles of a body: the first, and how many.
     pub fn triangles(&self, body: usize) -> (u32, u32) {
         let first = self.starts[body].triangle;
         (first, self.starts[body + 1].triangle - first)

@@ -1,4 +1,5 @@
-//! Lists that grow: counted past the end, enlarged to the exact demand, filled again within the frame.
+//! Lists that grow: entries past the end are counted, the list is enlarged to the exact demand, and
+//! the frame fills it again.
 
 use super::counts::Counts;
 use crate::device::{Ahead, Buffer, Device, View};
@@ -6,7 +7,7 @@ use crate::error::Error;
 use bytemuck::Pod;
 use nearmiss_kernels::abi::{Counter, Counters, Output, Span};
 
-/// A list in device memory, whose entries a counter counts.
+/// A list in device memory, with a counter of its entries.
 pub struct List<T> {
     name: &'static str,
     counter: Counter,
@@ -17,7 +18,7 @@ pub struct List<T> {
 pub const LONGEST: u64 = u32::MAX as u64;
 
 impl<T: Pod> List<T> {
-    /// A list with room for `capacity` entries, counted by that counter.
+    /// Allocates a list with room for `capacity` entries.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -30,7 +31,7 @@ impl<T: Pod> List<T> {
         Ok(List { name, counter, entries: device.of(name).buffer(capacity.min(LONGEST as usize))? })
     }
 
-    /// Makes room for at least so many entries. What the list held is lost if it grows.
+    /// Makes room for at least `capacity` entries. If the list grows, its entries are lost.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -43,87 +44,90 @@ impl<T: Pod> List<T> {
         Ok(())
     }
 
-    /// What a kernel is given, that counts with these counters.
+    /// Returns the list as a kernel's output, with these counters.
     pub fn output(&self, counters: Counters) -> Output<T> {
         counters.output(self.entries.span(), self.counter)
     }
 
-    /// The memory alone, where something else knows how many entries are there.
+    /// Returns the memory alone, if the number of entries is known from elsewhere.
     pub fn entries(&self) -> Span<T> {
         self.entries.span()
     }
 
-    /// How many entries there is room for.
+    /// Returns the number of entries that there is room for.
     pub fn capacity(&self) -> usize {
         self.entries.len()
     }
 
-    /// How many entries the kernels asked for.
+    /// Returns the number of entries that the kernels counted.
     pub fn demand(&self, counters: &Counts) -> u64 {
         counters[self.counter]
     }
 
-    /// Sets the first entries, and in `counts` how many they are.
+    /// Sets the first entries, and their number in `counts`.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     ///
     /// # Panics
-    /// When there are more than there is room for: a fault of the caller.
+    /// If there are more entries than room: a fault of the caller.
     pub fn put(&mut self, entries: &[T], counts: &mut Counts) -> Result<(), Error> {
         counts[self.counter] = entries.len() as u64;
         self.entries.write(entries)
     }
 
-    /// The first entries, as many as the kernels asked for in a frame with these counters and an eighth more, to be read ahead.
+    /// Returns the first entries, to be read ahead: the demand of a frame with these counters, and
+    /// an eighth more.
     pub fn ahead(&self, counters: &Counts) -> Ahead<'_> {
         let demand = self.demand(counters);
         self.entries.ahead((demand + demand / 8) as usize)
     }
 
-    /// The entries, to look at.
+    /// Returns a view of the entries.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn view(&self, counters: &Counts) -> Result<View<'_, T>, Error> {
         self.entries.view(self.demand(counters) as usize)
     }
 
-    /// The entries.
+    /// Returns the entries.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn read(&self, counters: &Counts) -> Result<Vec<T>, Error> {
         self.first(self.demand(counters))
     }
 
-    /// The first so many entries.
+    /// Returns the first `count` entries.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn first(&self, count: u64) -> Result<Vec<T>, Error> {
         self.entries.read(count as usize)
     }
 }
 
-/// A list whose entries do not matter, only their number. Counted anew when the step that fills it runs again.
+/// A list, seen as the number of its entries. They are counted again when its step runs again.
 pub trait GrowableOutput {
-    /// Which counter counts the entries.
+    /// Returns the counter of the entries.
     fn counter(&self) -> Counter;
-    /// How many entries there is room for.
+    /// Returns the number of entries that there is room for.
     fn room(&self) -> u64;
-    /// Whether the kernels asked for more.
+    /// Returns whether the kernels counted more entries than there is room for.
     fn has_overflowed(&self, counters: &Counts) -> bool {
         counters[self.counter()] > self.room()
     }
-    /// Makes room for what the kernels asked for, and an eighth more for the next frame; whether it had to.
+    /// Makes room for the counted entries, and an eighth more for the next frame. Returns whether
+    /// the list grew.
     ///
     /// # Errors
-    /// [`Error::OutOfMemory`] when there is no memory, or the list would be longer than an index reaches.
+    /// [`Error::OutOfMemory`] if there is no memory, or the list would be longer than 32 bits can
+    /// index.
     fn grow(&mut self, device: &Device, counters: &Counts) -> Result<bool, Error>;
 }
 
-/// A number that the kernels count and that has no list.
+/// A counter without a list.
 impl GrowableOutput for Counter {
     fn counter(&self) -> Counter {
         *self

@@ -1,4 +1,4 @@
-//! From bodies to contacts: the way of a frame.
+//! The pipeline: the stages of a frame, from bodies to contacts.
 
 pub mod below_precision;
 mod broad;
@@ -38,9 +38,9 @@ use nearmiss_kernels::abi::BodyTolerance;
 use std::sync::Arc;
 use typed::TypedPipeline;
 
-/// A scene that a pipeline is made for.
+/// Parameters of a scene's pipeline.
 pub struct SceneParts {
-    /// Where every body lies.
+    /// The place of every body.
     pub layout: Arc<Layout>,
     /// Whether any position needs f64.
     pub holds_f64: bool,
@@ -48,30 +48,31 @@ pub struct SceneParts {
     pub has_ends: bool,
 }
 
-/// A query of such a scene.
+/// Parameters of a query of the scene.
 pub struct QueryParts {
-    /// Where every body lies, as this query sees it.
+    /// The place of every body, as this query uses it.
     pub layout: Arc<Layout>,
     /// The query, with the largest tolerance of its pairs.
     pub query: Query,
-    /// Tolerances of bodies by their first vertices; empty if all pairs have the same, and for queries without one.
+    /// Tolerances of bodies by their first vertices. Empty if all pairs have the same tolerance, or
+    /// the query has none.
     pub tolerances: Vec<BodyTolerance>,
-    /// Its part of the work.
+    /// Its share of the work.
     pub share: Share,
 }
 
 #[cfg(test)]
 impl QueryParts {
-    /// All of a query's work.
+    /// Returns a query with all of its work.
     fn whole(layout: Arc<Layout>, query: Query) -> QueryParts {
         QueryParts { layout, query, tolerances: Vec::new(), share: Share::WHOLE }
     }
 }
 
-/// The pipeline of a scene.
+/// Returns the pipeline of a scene.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn pipeline(device: Device, bodies: &[Body], parts: &SceneParts) -> Result<Box<dyn Pipeline>, Error> {
     Ok(if parts.holds_f64 {
         Box::new(TypedPipeline::<f64>::new(device, bodies, parts)?)

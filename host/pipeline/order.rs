@@ -1,4 +1,5 @@
-//! Order: contacts into canonical order on the device, where the host would be slower: on a GPU.
+//! Order: sorts contacts into canonical order on the device, if that is faster than the host: on a
+//! GPU.
 
 use super::counts::Counts;
 use super::layout::Layout;
@@ -14,9 +15,9 @@ use nearmiss_kernels::stage::order::LIST_BITS;
 
 /// A kind of contact that the device can order.
 pub trait Ordered: Pod + Named {
-    /// Writes their keys.
+    /// The kernel that writes their keys.
     type Keys: Entry<Args = OrderArgs<Self>>;
-    /// Puts them where their keys are.
+    /// The kernel that moves them to the places of their keys.
     type Gather: Entry<Args = OrderArgs<Self>>;
 }
 
@@ -35,24 +36,24 @@ impl Ordered for nearmiss_kernels::abi::NearHit {
     type Gather = entry::order_gather_near;
 }
 
-/// The ordered list, and what ordering needs.
+/// The ordered list, and the memory of the sort.
 pub struct Order<T> {
     /// All contacts, in order.
     pub list: List<T>,
     items: [Buffer<u64>; 2],
     counts: Buffer<u64>,
-    /// Bits of a feature's number.
+    /// Bits of a feature's index.
     bits: u32,
 }
 
-/// The ordering of a kind of contacts, whatever kind that is; none before it has begun.
+/// The ordering of any kind of contacts; it has no list before it has begun.
 pub trait Ordering {
-    /// Has the device order contacts, with room for so many at first.
+    /// Makes the device order contacts, with room for `capacity` at first.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn begin(&mut self, device: &Device, layout: &Layout, capacity: usize) -> Result<(), Error>;
-    /// The ordered list.
+    /// Returns the ordered list.
     fn list(&mut self) -> Option<&mut dyn GrowableOutput>;
 }
 
@@ -68,10 +69,10 @@ impl<T: Ordered> Ordering for Option<Order<T>> {
 }
 
 impl<T: Ordered> Order<T> {
-    /// Takes the memory for `capacity` contacts at first.
+    /// Allocates memory for `capacity` contacts at first.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new(device: &Device, layout: &Layout, capacity: usize) -> Result<Self, Error> {
         let ends = layout.starts.last().copied().unwrap_or_default();
         let most = ends.vertex.max(ends.triangle).max(ends.edge);
@@ -83,21 +84,21 @@ impl<T: Ordered> Order<T> {
         })
     }
 
-    /// Bits of a contact's place in its list.
+    /// Returns the bits of a contact's place in its list.
     fn number_bits(&self) -> u32 {
         bits(self.list.capacity() as u64)
     }
 
-    /// Whether names and places share a word, a place having 32 bits at most. Else the lists stay as they are, and the host
-    /// orders them.
+    /// Returns whether the indices of both features and the place fit one word. A place has at most
+    /// 32 bits. Otherwise the lists stay as they are, and the host orders them.
     pub fn fits(&self) -> bool {
         LIST_BITS + 2 * self.bits + self.number_bits() <= 64
     }
 
-    /// The entries of the lists in order, if they were ordered.
+    /// Returns the entries of the lists in order, if they were ordered.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn view(&self, counters: &Counts, lists: &[&List<T>]) -> Result<Option<View<'_, T>>, Error> {
         let all: u64 = lists.iter().map(|list| list.demand(counters)).sum();
         (self.list.demand(counters) == all).then(|| self.list.view(counters)).transpose()
@@ -106,7 +107,7 @@ impl<T: Ordered> Order<T> {
     /// Orders one list or two. Entries beyond the capacity are counted and left out.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn run(
         &mut self,
         device: &Device,
@@ -114,7 +115,7 @@ impl<T: Ordered> Order<T> {
         second: Option<&List<T>>,
         counters: Counters,
     ) -> Result<(), Error> {
-        // Without an answer nothing is counted as ordered.
+        // If the keys do not fit, no contact is counted as ordered.
         if !self.fits() {
             return Ok(());
         }
@@ -147,7 +148,7 @@ impl<T: Ordered> Order<T> {
     }
 }
 
-/// Bits of numbers below `end`; one at least.
+/// Returns the bits of numbers below `end`; at least one.
 fn bits(end: u64) -> u32 {
     end.max(2).next_power_of_two().trailing_zeros()
 }
@@ -166,7 +167,7 @@ mod tests {
     /// Vertices, triangles and edges of each of two bodies.
     const OF_A_BODY: u32 = 700;
 
-    /// What was ordered, and how many were counted.
+    /// The ordered contacts, and their count.
     type Outcome<T> = (Option<Vec<T>>, u64);
 
     fn machines() -> Vec<Device> {
@@ -176,7 +177,7 @@ mod tests {
         engines.chain([Blocks::Reverse, Blocks::Shuffled(3)].map(order)).map(Device::emulator).collect()
     }
 
-    /// Contacts of two bodies, no two alike and in no order; each knows its place here by its time.
+    /// Returns distinct contacts of two bodies, unordered; the time of each is its place here.
     fn hits(seed: u64, count: usize) -> Vec<Hit> {
         let (mut rng, mut seen, mut all) = (words(seed), BTreeSet::new(), Vec::new());
         while all.len() < count {
@@ -189,7 +190,7 @@ mod tests {
         all
     }
 
-    /// Orders two lists on a device, with so much room.
+    /// Orders two lists on a device, with room for `capacity` contacts.
     fn ordered<T: Ordered>(device: &Device, lists: [&[T]; 2], capacity: usize) -> Outcome<T> {
         let at = |n| Offsets { vertex: n, triangle: n, edge: n };
         let layout = Layout { starts: vec![at(0), at(OF_A_BODY), at(2 * OF_A_BODY)], ..Layout::default() };
@@ -201,7 +202,7 @@ mod tests {
             list
         });
         let mut counters = FrameCounters::new(device).expect("memory");
-        // Twice: what a frame left must not reach the next one.
+        // Twice: a frame's data must not reach the next one.
         for _ in 0..2 {
             counts[counter::ORDERED] = 0;
             counters.write(&counts).expect("written");
@@ -215,7 +216,7 @@ mod tests {
         (all, demand)
     }
 
-    /// The expected order: the first list, then the second, each by both features.
+    /// Returns the expected order: the first list, then the second, each by both features.
     fn wanted<T: Ordered>(lists: [&[T]; 2]) -> Vec<T> {
         let mut all: Vec<(usize, T)> =
             (0..2).flat_map(|i| lists[i].iter().map(move |&contact| (i, contact))).collect();
@@ -241,7 +242,7 @@ mod tests {
         }
     }
 
-    /// The judge of the test above condemns two contacts that changed places.
+    /// The judge of the test above rejects two swapped contacts.
     #[test]
     fn another_order_is_noticed() {
         let all = hits(8, 100);
@@ -259,7 +260,7 @@ mod tests {
         }
     }
 
-    /// Names of 2 x 31 bits leave none for numbers: the host's turn.
+    /// Features of 2 x 31 bits leave no bits for places: the host orders.
     #[test]
     fn names_too_long_for_a_word_stay_unordered() {
         let device = machines().remove(0);

@@ -1,4 +1,4 @@
-//! Which kernels serve positions of f32, and which of f64.
+//! The kernels for positions in f32, and those for f64.
 
 use crate::mesh::Positions;
 use nearmiss_kernels::abi::{
@@ -10,49 +10,49 @@ use nearmiss_kernels::math::{Real, Vec3};
 
 /// A precision of positions, with its kernels.
 pub trait Precision: Real + Send {
-    /// Vertices of bodies that were moved.
+    /// Places the vertices of moved bodies.
     type Place: Entry<Args = PlaceArgs<Self>>;
-    /// Positions at the start of the step, apart.
+    /// Copies positions at the start of the step.
     type Starts: Entry<Args = StartsArgs<Self>>;
-    /// Box of the triangle centres.
+    /// Computes the box of the triangle centres.
     type Bounds: Entry<Args = MortonArgs<Self>>;
-    /// Codes of the triangle centres.
+    /// Computes codes of the triangle centres.
     type Morton: Entry<Args = MortonArgs<Self>>;
-    /// Boxes of stretches of triangles.
+    /// Computes boxes of runs of triangles.
     type HalvesBounds: Entry<Args = CutArgs<Self>>;
-    /// Codes of triangles in stretches.
+    /// Computes codes of triangles in runs.
     type Halves: Entry<Args = CutArgs<Self>>;
-    /// Runs in halves of halves.
+    /// Cuts runs into halves of halves.
     type Runs: Entry<Args = CutArgs<Self>>;
-    /// The seed's discrete test.
+    /// The discrete test of Möller (1997), in floating point.
     type Moller: Entry<Args = DiscreteArgs<Self>>;
     /// The discrete filter.
     type Filter: Entry<Args = DiscreteArgs<Self>>;
-    /// The discrete filter in f64, where the positions are narrower.
+    /// The discrete filter in f64, if positions are f32.
     type Wide: Entry<Args = DiscreteArgs<Self>>;
-    /// Whether they are: else that kernel is not launched.
+    /// Whether positions are f32: otherwise that kernel is not launched.
     const WIDENS: bool;
     /// The exact signs.
     type Exact: Entry<Args = DiscreteArgs<Self>>;
     /// The discrete filter at the start of a step.
     type StartFilter: Entry<Args = DiscreteArgs<Self>>;
-    /// The same in f64, where the positions are narrower.
+    /// The same filter in f64, if positions are f32.
     type StartWide: Entry<Args = DiscreteArgs<Self>>;
     /// The exact signs at the start of a step.
     type StartExact: Entry<Args = DiscreteArgs<Self>>;
-    /// Triangle pairs to pairs of features whose boxes meet.
+    /// Turns triangle pairs into pairs of features whose boxes meet.
     type Features: Entry<Args = FeaturesArgs<Self>>;
-    /// The same of triangles at rest.
+    /// The same for triangles at one time.
     type FeaturesAtRest: Entry<Args = FeaturesArgs<Self>>;
-    /// Pairs of features at rest within a distance.
+    /// Finds pairs of features within a distance, at one time.
     type Near: Entry<Args = NearArgs<Self>>;
-    /// The least distance of triangles.
+    /// Finds the least distance of triangles.
     type Least: Entry<Args = LeastArgs<Self>>;
-    /// The first pair of it.
+    /// Finds the first pair at that distance.
     type Witness: Entry<Args = LeastArgs<Self>>;
-    /// Where that is nearest.
+    /// Finds the nearest points of that pair.
     type Nearest: Entry<Args = LeastArgs<Self>>;
-    /// Those that may meet.
+    /// Keeps pairs that may meet.
     type Cull: Entry<Args = CullArgs<Self>>;
     /// Vertex/face by the cubic in f32.
     type Vf32: Entry<Args = SolveArgs<Self>>;
@@ -62,27 +62,27 @@ pub trait Precision: Real + Send {
     type Ee32: Entry<Args = SolveArgs<Self>>;
     /// Edge/edge by the cubic in f64.
     type Ee64: Entry<Args = SolveArgs<Self>>;
-    /// Listed pairs that are too large for the tolerance.
+    /// Counts listed pairs that are too large for the tolerance.
     type BelowPrecision: Entry<Args = BelowPrecisionArgs<Self>>;
     /// Isolation of roots in f32.
     type Isolate32: Entry<Args = RungArgs<Self>>;
     /// Isolation of roots in f64.
     type Isolate64: Entry<Args = RungArgs<Self>>;
-    /// What touches at the start, and flat motion.
+    /// Touching at the start, and flat motion.
     type Settle: Entry<Args = RungArgs<Self>>;
-    /// What is left, in slices.
+    /// Solves the remaining pairs in slices.
     type Slice: Entry<Args = RungArgs<Self>>;
-    /// The first step to a separation, in f32.
+    /// The first step of separation, in f32.
     type SeparateFirst: Entry<Args = RungArgs<Self>>;
-    /// A separation, in f32.
+    /// Separation, in f32.
     type Separate32: Entry<Args = RungArgs<Self>>;
-    /// A separation, in f64.
+    /// Separation, in f64.
     type Separate64: Entry<Args = RungArgs<Self>>;
 
-    /// Positions in this precision, exactly: f32 is only asked for where all bodies are f32.
+    /// Returns positions in this precision, exactly: f32 is only used if all bodies are f32.
     fn points(positions: &Positions) -> impl Iterator<Item = Vec3<Self>>;
 
-    /// Points of this precision as positions.
+    /// Returns points of this precision as positions.
     fn positions(points: Vec<Vec3<Self>>) -> Positions;
 }
 

@@ -1,4 +1,5 @@
-//! The radix sort's memory and launches: one launch a byte, of what counted its first byte as it was made.
+//! The radix sort's memory and launches: one launch per byte. The kernel that makes the items
+//! counts their first byte.
 
 use crate::device::{Buffer, Device};
 use crate::error::Error;
@@ -7,31 +8,33 @@ use nearmiss_kernels::abi::{SortArgs, Span, Tiles};
 use nearmiss_kernels::entry;
 use nearmiss_kernels::sort::{EACH, LONGEST_TILE, MOST_TILES, WORDS};
 
-/// Into how many tiles `count` items are cut, and how many items a tile has.
+/// Returns the number of tiles of `count` items, and the number of items of a tile.
 fn tiles(device: &Device, count: u32) -> (u32, u32) {
     let round = EACH as u32 * device.lanes::<entry::sort_pass>();
     let rounds = count.div_ceil(round).div_ceil(MOST_TILES).clamp(1, LONGEST_TILE / round);
     (count.div_ceil(rounds * round).max(1), rounds * round)
 }
 
-/// Words of the counts of one list of `count` items.
+/// Returns the words of the counts of one list of `count` items.
 pub fn words(device: &Device, count: u32) -> usize {
     (tiles(device, count).0 * WORDS) as usize
 }
 
-/// List number `list` of those of `count` items whose counts lie one behind the other in `counts`.
+/// Returns list number `list` of those whose counts follow each other in `counts`; each list has
+/// `count` items.
 pub fn counted(device: &Device, counts: Span<u64>, count: u32, list: usize) -> Tiles {
     let (tiles, items) = tiles(device, count);
     let words = u64::from(tiles * WORDS);
     Tiles { counts: counts.part(list as u64 * words, words), count: tiles, items }
 }
 
-/// Sorts the items of the first span, `count` of them, or as many as the word `live` says (no more), by the bytes that begin
-/// at those bits, lowest first; `counts` has a list for each byte, the first one's counted, the others' zero. The spans take
-/// turns: after an even number of bytes the first one holds what is sorted.
+/// Sorts the items of the first span. Their number is `count`, or the smaller value of the word
+/// `live`. Keys are the bytes that begin at the bits `shifts`, lowest first. `counts` has a list
+/// per byte: the first one is counted, the others are zero. The spans swap roles: after an even
+/// number of bytes the first one holds the sorted items.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn sort(
     device: &Device,
     [mut from, mut to]: [&Buffer<u64>; 2],
@@ -87,7 +90,7 @@ mod tests {
     }
 
     fn items(count: usize) -> Vec<u64> {
-        // Half of them with few digits, so that many are alike.
+        // Half of the items have few digits, so that many are equal.
         (0..count as u64)
             .zip(samples::words(count as u64))
             .map(|(i, word)| if i % 2 == 0 { word } else { word & 0x301_0000_2020 | i << 50 })
@@ -108,7 +111,7 @@ mod tests {
         for lanes in [1, 7, 33, 256, 1024] {
             let device =
                 Device::emulator(Emulator::new(Mode::Engine, None).expect("threads").with_lanes(lanes));
-            // With one lane 20,000 items are more tiles than there may be: they grow.
+            // With one lane, 20,000 items exceed the largest number of tiles: the tiles grow.
             for count in [1, 8, 100, 2_048, 2_049, 20_000] {
                 let items = items(count);
                 assert!(sorted(&device, &items, |_| ()) == wanted(&items), "{count} items, {lanes} lanes");

@@ -1,22 +1,23 @@
-//! Tolerances when none is named: that of a body, of a pair, of a scene.
+//! Default tolerances: those of a body, of a pair, of a scene.
 
 use super::layout::Offsets;
 use crate::scene::{Body, BodyKind};
 use nearmiss_kernels::abi::BodyTolerance;
 
-/// Tolerance of the pairs of two bodies, or of a body and itself: the smaller of both defaults, each that of the mesh that the
-/// body was made of. A body without a side of a length has none, and takes that of the other; 0 if neither has one.
+/// Returns the tolerance of the pairs of two bodies, or of a body and itself: the smaller of both
+/// defaults. Each default is that of the mesh that the body was made from. A body without a side of
+/// positive length has none, and takes that of the other; 0 if neither has one.
 pub fn of_pair(a: &Body, b: &Body) -> f64 {
     smaller(own(a), own(b))
 }
 
-/// The smaller of two; 0 if neither is finite.
+/// Returns the smaller of two values; 0 if neither is finite.
 fn smaller(a: f64, b: f64) -> f64 {
     let smaller = a.min(b);
     if smaller.is_finite() { smaller } else { 0.0 }
 }
 
-/// The default of a body; infinite if it has none.
+/// Returns the default of a body; infinite if it has none.
 fn own(body: &Body) -> f64 {
     let tolerance = body.default_tolerance();
     if tolerance > 0.0 { tolerance } else { f64::INFINITY }
@@ -25,29 +26,29 @@ fn own(body: &Body) -> f64 {
 /// Tolerances of a scene's pairs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tolerances {
-    /// The smallest of all pairs that may meet.
+    /// The smallest tolerance of all pairs that may meet.
     pub least: f64,
-    /// The largest.
+    /// The largest tolerance.
     pub largest: f64,
-    /// The smallest above 0; 0 if there is none.
+    /// The smallest tolerance above 0; 0 if there is none.
     pub finest: f64,
-    /// That of each body, infinite for one that has none; empty if all pairs have the same.
+    /// Tolerance of each body, infinite if it has none; empty if all pairs have the same.
     bodies: Vec<f64>,
 }
 
 impl Tolerances {
-    /// One for all pairs, as named.
+    /// Returns one tolerance for all pairs.
     pub fn named(tolerance: f64) -> Tolerances {
         Tolerances { least: tolerance, largest: tolerance, finest: tolerance, bodies: Vec::new() }
     }
 
-    /// The default of each pair. Whether environments and groups let it meet is not considered. Cost: a root a side of bodies
-    /// that have not told theirs, and a sort of the bodies.
+    /// Returns the default of each pair. Environments and groups are ignored. Cost: a square root
+    /// per side of bodies whose default is not yet computed, and a sort of the bodies.
     pub fn of(bodies: &[Body]) -> Tolerances {
         let all: Vec<f64> = bodies.iter().map(own).collect();
         let mut order: Vec<usize> = (0..bodies.len()).filter(|&i| bodies[i].face_count() > 0).collect();
         order.sort_by(|&i, &j| all[i].total_cmp(&all[j]));
-        // That of each pair of which the first body has the smaller one.
+        // The tolerance of each pair is that of its first body, which has the smaller one.
         let moves = |i: usize| bodies[i].kind() != BodyKind::Fixed;
         let mut mover_follows = false;
         let mut follows = false;
@@ -66,7 +67,8 @@ impl Tolerances {
         Tolerances { least, largest, finest, bodies }
     }
 
-    /// As kernels read them, by the first vertex of each body; empty if all pairs have the same.
+    /// Returns the tolerances as kernels read them, by the first vertex of each body; empty if all
+    /// pairs have the same.
     pub fn records(&self, starts: &[Offsets]) -> Vec<BodyTolerance> {
         let of =
             |(&tolerance, start): (&f64, &Offsets)| BodyTolerance { vertex: start.vertex, pad: 0, tolerance };
@@ -103,7 +105,7 @@ mod tests {
             (vec![triangle(1.0)], [small; 3], false),
             (vec![], [0.0; 3], false),
             (vec![point(), point()], [0.0; 3], false),
-            // A far ground of large triangles meets the others alone.
+            // A far ground of large triangles meets only the others.
             (vec![triangle(1.0), fixed(1024.0)], [small; 3], false),
             (vec![triangle(1.0), fixed(1024.0), fixed(1024.0)], [small; 3], false),
             (vec![triangle(1024.0), fixed(1.0)], [small, large, small], true),

@@ -36,20 +36,20 @@ use scene::{BroadKey, SceneMemory};
 use std::sync::Arc;
 use xxhash_rust::xxh3::xxh3_64;
 
-/// A step of a frame that fills lists; each reads what the one before filled.
+/// A step of a frame that fills lists; each reads the lists of the one before.
 #[derive(Clone, Copy)]
 pub enum Step {
     /// Candidate triangle pairs of a sample.
     Sample,
     /// Candidate triangle pairs.
     Traverse,
-    /// A step of the narrow phase, by its place; and whether it looks at a sample.
+    /// A step of the narrow phase, by its index; and whether it reads a sample.
     Narrow(usize, bool),
-    /// Contacts in canonical order, where the device does that.
+    /// Contacts in canonical order, if the device orders them.
     Order,
 }
 
-/// A broad phase, and the choices that queries must share to use it.
+/// A broad phase, and the choices that queries must have in common to use it.
 pub struct Broad<R: Precision> {
     key: BroadKey,
     phase: Box<dyn BroadPhase<R>>,
@@ -60,80 +60,86 @@ pub struct Broad<R: Precision> {
 pub struct TypedPipeline<R: Precision> {
     scene: SceneMemory<R>,
     queries: Vec<QueryMemory<R>>,
-    /// Queries that are submitted and not waited for.
+    /// Queries that are submitted, whose answers stay on the device.
     submission: Option<submit::Submission>,
 }
 
-/// A pipeline of any precision and any volume. A query is named by its place.
+/// A pipeline of any precision and any volume. A query is named by its index.
 pub trait Pipeline: repeat::Again + submit::Submits + Send {
-    /// The place of a query; its memory is made if there is none of its shape. From then on its numbers are those.
+    /// Returns the index of a query, and allocates its memory if no query has its shape. Later
+    /// frames use the numbers of this query.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] if work cannot be divided; those of the device.
+    /// [`Error::InvalidArgument`] if work cannot be divided; device errors.
     fn take_query(&mut self, parts: &QueryParts) -> Result<usize, Error>;
-    /// Moves bodies to where they are now, those that are named, in ascending order.
+    /// Moves the named bodies, in ascending order, to their new positions.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn place(&mut self, bodies: &[Body], moved: &[Moved]) -> Result<(), Error>;
-    /// Where all bodies are, as the device knows it.
+    /// Returns the positions of all bodies, as the device has them.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn whereabouts(&self) -> Result<Whereabouts, Error>;
-    /// Readies a query for bodies where they are; whether tiles or trees must be built for it.
+    /// Readies a query for the current positions. Returns whether tiles or trees must be built for
+    /// it.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn ready(&mut self, query: usize, bodies: &[Body]) -> Result<bool, Error>;
-    /// Builds the tiles or trees of a query over what moves, from the positions at t = 0; the milliseconds it took.
+    /// Builds the moving tiles or trees of a query, from the positions at t = 0. Returns the
+    /// milliseconds that it took.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn construct(&mut self, query: usize) -> Result<f64, Error>;
-    /// The same for every query that has them; the milliseconds that each took.
+    /// Builds them for every query that has them. Returns the milliseconds of each.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn construct_all(&mut self) -> Result<Vec<f64>, Error>;
-    /// The place of a query; `None` before its first frame.
+    /// Returns the index of a query; `None` before its first frame.
     fn place_of(&self, query: &Query) -> Option<usize>;
-    /// One frame: volumes, candidates, contacts. Lists that were too short grow, and the frame runs again from there.
+    /// Runs one frame: volumes, candidates, contacts. Lists that were too short grow, and the frame
+    /// reruns from there.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn frame(&mut self, query: usize) -> Result<(Found<'_>, Stages), Error>;
-    /// The next frame is a slice behind others, which have found so many rows.
+    /// Marks the next frame as a slice after others, which have found so many rows.
     fn after(&mut self, query: usize, rows: u64);
-    /// From here on it finds its share alone.
+    /// Restricts later frames to a share.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] if work cannot be divided; those of the device.
+    /// [`Error::InvalidArgument`] if work cannot be divided; device errors.
     fn take(&mut self, query: usize, share: Share) -> Result<(), Error>;
-    /// Cost of each tile of its share in the last frame, of all tiles; nothing if there is one share.
+    /// Returns the cost of each tile of its share in the last frame, of all tiles; empty if there
+    /// is one share.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn work(&self, query: usize) -> Result<Vec<u64>, Error>;
-    /// How many tiles beyond its share it met in the last frame, or the device's error.
+    /// Returns how many tiles outside its share it met in the last frame, or the device's error.
     fn met_beyond(&self, query: usize) -> Result<u64, Error>;
-    /// Levels of each tree.
+    /// Returns the number of levels of each tree.
     fn depths(&self, query: usize) -> Vec<usize>;
-    /// How often a list was too short and a frame was run again, so far.
+    /// Returns how often a frame reran because a list was too short, so far.
     fn reruns(&self) -> u64;
-    /// The wear of a query's tiles or trees.
+    /// Returns the wear of a query's tiles or trees.
     fn wear(&mut self, query: usize) -> &mut Wear;
-    /// A body has its first place.
+    /// Notes that a body has its first position.
     fn add_new_place(&mut self);
-    /// A hash of what each stage left in memory after the last frame, which was this query's, lists as sets: for comparing machines.
+    /// Returns a hash of each stage's memory after the last frame, which must be this query's.
+    /// Lists count as sets: for comparing machines.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn fingerprints(&self, query: usize) -> Result<Vec<(&'static str, u64)>, Error>;
     /// Checks every tree and its volumes.
     ///
     /// # Errors
-    /// [`Error::Bug`] with the first violation; those of the device.
+    /// [`Error::Bug`] with the first violation; device errors.
     fn check(&self, query: usize) -> Result<(), Error>;
 }
 
@@ -141,7 +147,7 @@ impl<R: Precision> TypedPipeline<R> {
     /// Uploads topology and positions of a scene.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new(device: Device, bodies: &[Body], parts: &SceneParts) -> Result<Self, Error> {
         let scene = SceneMemory::new(device, &parts.layout, bodies, parts.has_ends)?;
         Ok(TypedPipeline { scene, queries: Vec::new(), submission: None })
@@ -160,7 +166,7 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
             }
         };
         if self.queries[at].query != parts.query {
-            // Submissions have the numbers that they were prepared with.
+            // Submissions keep the numbers that they were prepared with.
             self.submission = None;
         }
         self.queries[at].set(&self.scene, parts)?;
@@ -292,7 +298,7 @@ impl<R: Precision> TypedPipeline<R> {
     }
 }
 
-/// A pipeline with one query whose tiles or trees are built, and the query's place.
+/// Returns a pipeline with one query whose tiles or trees are built, and the query's index.
 #[cfg(test)]
 fn one(
     device: &Device,

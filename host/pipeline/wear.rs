@@ -1,20 +1,22 @@
-//! When the order of triangles is stale: decided by counted tests, so that every machine decides alike.
+//! Decides when the order of triangles is stale. It counts tests, so that every machine decides
+//! alike.
 
-/// What building anew costs a triangle, in tests of two volumes: measured with tiles, cloth-ball, as the time of a construction over that of
-/// a test in a frame, 80 on an H200 and 30 to 60 on a CPU. It is in no answer.
+/// Cost of a rebuild per triangle, in tests of two volumes. Measured with tiles on cloth-ball, as
+/// the time of a construction over that of a test in a frame: 80 on an H200, 30 to 60 on a CPU. It
+/// affects no answer.
 const OF_A_TRIANGLE: u64 = 64;
 
-/// Tests beyond those of the first frame after building, and bodies that got a place since.
+/// Excess tests since the last rebuild, and whether a body got its first position since.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Wear {
     first: Option<u64>,
     beyond: u64,
-    /// Whether a frame has placed a body for the first time since then.
+    /// Whether a frame has placed a body for the first time since the last rebuild.
     has_new_place: bool,
 }
 
 impl Wear {
-    /// A frame took so many tests.
+    /// Adds the tests of a frame.
     pub fn add(&mut self, tests: u64) {
         match self.first {
             None => self.first = Some(tests),
@@ -22,18 +24,21 @@ impl Wear {
         }
     }
 
-    /// A frame places a body for the first time, as a rigid one that was added without its pose.
+    /// Notes that a frame places a body for the first time, such as a rigid one that was added
+    /// without its pose.
     pub fn add_new_place(&mut self) {
         self.has_new_place = true;
     }
 
-    /// The query has other numbers: its next frame is the first to compare with.
+    /// Forgets the reference: the query has other numbers, so its next frame is the first to
+    /// compare with.
     pub fn forget_first(&mut self) {
         self.first = None;
     }
 
-    /// Whether the next frame builds again: there is a new place, or tests beyond have cost as much as building anew: then at most twice as much is spent as by who knows what comes (Karlin,
-    /// Manasse, Rudolph and Sleator, "Competitive snoopy caching", 1988).
+    /// Returns whether the next frame rebuilds: after a new place, or when the excess tests have
+    /// cost as much as a rebuild. The total cost is then at most twice that of an optimal schedule
+    /// (Karlin, Manasse, Rudolph and Sleator, "Competitive snoopy caching", 1988).
     pub fn is_worn(&self, triangles: usize) -> bool {
         self.has_new_place || self.beyond > OF_A_TRIANGLE * triangles as u64
     }
@@ -46,7 +51,7 @@ mod tests {
     #[test]
     fn what_is_beyond_the_first_frame_is_summed() {
         let mut wear = Wear::default();
-        // However much the first one takes, and those that take less.
+        // The first frame counts nothing, whatever its tests; nor do frames with fewer.
         for tests in [9_000, 8_000, 9_000] {
             wear.add(tests);
             assert!(!wear.is_worn(10));

@@ -1,6 +1,6 @@
-//! What judges nearmiss: exact answers in rational numbers, contacts built to be hard, scenes that are made here, what each
-//! faster choice costs, and the thesis's tables beside ours. A part of this project, not of the library: nothing here is
-//! promised to stay.
+//! Evaluation of nearmiss: exact answers in rational numbers, hard built contacts, and generated
+//! scenes. It measures the cost of each faster choice, and compares the thesis's tables with ours.
+//! It belongs to this project, not to the library: nothing here is stable.
 
 pub mod accuracy;
 pub mod case;

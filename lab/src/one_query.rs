@@ -1,4 +1,4 @@
-//! Detectors that answer one query step after step: what tests, figures and tables are made with.
+//! Detectors that answer one query step after step, for tests, figures and tables.
 
 use nearmiss::contacts::DeviceAnswer;
 use nearmiss::device::Device;
@@ -7,7 +7,7 @@ use nearmiss::scene::{DeviceMotion, Motion};
 use nearmiss::{Body, Contacts, Detector, DeviceShare, Error, MultiDetector, Query, Scene, Stage, plan};
 use std::ops::{Deref, DerefMut};
 
-/// A detector, and its query. Everything else is that of the detector.
+/// A detector with its query. Everything else is that of the detector.
 pub struct OneQuery {
     detector: Detector,
     query: Query,
@@ -28,10 +28,10 @@ impl DerefMut for OneQuery {
 }
 
 impl OneQuery {
-    /// A detector whose memory for the query is taken, and whose tiles or trees are built.
+    /// Makes a detector, allocates the query's memory and builds tiles or trees.
     ///
     /// # Errors
-    /// Those of the detector, and of the query's numbers.
+    /// Errors of the detector, and of the query's numbers.
     pub fn new(device: Device, scene: impl Into<Scene>, query: impl Into<Query>) -> Result<OneQuery, Error> {
         let query = query.into();
         query.check()?;
@@ -61,18 +61,18 @@ impl OneQuery {
         self.detector.query(&self.query)
     }
 
-    /// Moves a body to where another one of the same mesh is; others rest.
+    /// Moves a body to the positions of another one with the same mesh; others rest.
     ///
     /// # Errors
-    /// As of [`Detector::update`].
+    /// As [`Detector::update`].
     pub fn move_to(&mut self, body: usize, frame: Body) -> Result<(), Error> {
         self.move_all([(body, &frame)])
     }
 
-    /// The same of several bodies at once.
+    /// Moves several bodies at once, as [`OneQuery::move_to`].
     ///
     /// # Errors
-    /// As of [`Detector::update`]; [`Error::Bug`] for a body that is not there.
+    /// As [`Detector::update`]; [`Error::Bug`] for a body that does not exist.
     pub fn move_all<'a>(&mut self, frames: impl IntoIterator<Item = (usize, &'a Body)>) -> Result<(), Error> {
         let mut motions = Vec::new();
         for (body, frame) in frames {
@@ -88,7 +88,7 @@ impl OneQuery {
         self.detector.update(&motions)
     }
 
-    /// As [`Detector::prepare`]; the answer now.
+    /// As [`Detector::prepare`]; also returns the current answer.
     ///
     /// # Errors
     /// As there.
@@ -155,20 +155,20 @@ impl OneQuery {
         self.detector.depths(&self.query)
     }
 
-    /// Smallest tolerance of the query's pairs; `None` without a certified solver.
+    /// Returns the smallest tolerance of the query's pairs; `None` without a certified solver.
     pub fn tolerance(&mut self) -> Option<f64> {
         let certified = *self.query.certified()?;
         Some(certified.tolerance.unwrap_or_else(|| self.detector.tolerance()))
     }
 
-    /// Largest tolerance of the query's pairs; `None` without a certified solver.
+    /// Returns the largest tolerance of the query's pairs; `None` without a certified solver.
     pub fn largest_tolerance(&mut self) -> Option<f64> {
         let certified = *self.query.certified()?;
         Some(certified.tolerance.unwrap_or_else(|| self.detector.largest_tolerance()))
     }
 }
 
-/// Several detectors of one scene, and their query. Everything else is that of the detectors.
+/// Several detectors of one scene, with their query. Everything else is that of the detectors.
 pub struct OneQueryOnSeveral {
     detector: MultiDetector,
     query: Query,
@@ -189,10 +189,10 @@ impl DerefMut for OneQueryOnSeveral {
 }
 
 impl OneQueryOnSeveral {
-    /// Detectors of a scene, by device.
+    /// Makes detectors of a scene, one per device.
     ///
     /// # Errors
-    /// Those of the detectors, and of the query's numbers.
+    /// Errors of the detectors, and of the query's numbers.
     pub fn new(
         devices: Vec<Device>,
         scene: impl Into<Scene>,

@@ -1,5 +1,5 @@
-//! Broad phase: from where vertices are to candidate pairs of triangles. Each is a strategy with its own memory; after the narrow phase
-//! all give one answer.
+//! Broad phase: from positions to candidate pairs of triangles. Each broad phase is a strategy with
+//! its own memory; after the narrow phase all give the same answer.
 
 mod prefix;
 mod sorted;
@@ -21,197 +21,203 @@ use nearmiss_kernels::math::{Vec3, round};
 use tiles::Tiles;
 use trees::Trees;
 
-/// What a broad phase is given: the machine, and where what lies there.
+/// Inputs of a broad phase: the device and the spans on it.
 #[derive(Clone, Copy)]
 pub struct BroadContext<'a, R: Precision> {
-    /// The machine.
+    /// The device.
     pub device: &'a Device,
     /// Positions.
     pub frames: Positions<R>,
     /// Vertex indices of every triangle.
     pub faces: Span<[u32; 3]>,
-    /// What the kernels know of the bodies; empty where there is one alone.
+    /// Records of the bodies for the kernels; empty if there is only one body.
     pub records: Span<BodyRecord>,
-    /// Whether launches may be recorded and run later, or never: then the host must not rely on them.
+    /// Whether launches may be recorded, and run later or never: the host must not rely on them.
     pub is_submitted: bool,
 }
 
-/// A part of the tiles of what moves, in parts of 2^32 of their number: whose first tile it is, finds a pair. Shares that touch leave
-/// nothing out and have nothing twice, whatever that number.
+/// A range of the moving tiles, in units of 1/2^32 of their number. A pair belongs to the share
+/// that has its first tile. Adjacent shares have no gap and no overlap, for any number of tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Share {
-    /// Where it begins.
+    /// Start of the range.
     pub from: u64,
-    /// Where it ends.
+    /// End of the range, exclusive.
     pub to: u64,
 }
 
 impl Share {
-    /// The unit.
+    /// The number of units in the whole range.
     pub const ALL: u64 = 1 << 32;
     /// All tiles.
     pub const WHOLE: Share = Share { from: 0, to: Share::ALL };
 
-    /// Slice `k` of so many.
+    /// Returns slice `k` of `slices` equal ones.
     pub fn slice(&self, k: u32, slices: u32) -> Share {
         let at = |k: u32| self.from + (self.to - self.from) * u64::from(k) / u64::from(slices);
         Share { from: at(k), to: at(k + 1) }
     }
 
-    /// The tiles of so many that are its.
+    /// Returns the range of this share among `tiles` tiles.
     pub fn of(&self, tiles: u32) -> std::ops::Range<u32> {
         let [from, to] = [self.from, self.to].map(|part| (u64::from(tiles) * part / Share::ALL) as u32);
         from..to
     }
 }
 
-/// Where candidates go.
+/// Outputs and options of a traversal.
 #[derive(Clone, Copy)]
 pub struct Candidates {
     /// Out: candidate triangle pairs.
     pub pairs: Output<Pair>,
     /// The frame's counters, all zero before.
     pub counters: Counters,
-    /// What is asked of them all.
+    /// Options of every pair's test.
     pub flags: TraverseFlags,
-    /// Which are asked for.
+    /// Which candidates are listed.
     pub which: Which,
-    /// Whose: of what part of the tiles.
+    /// The range of tiles to traverse.
     pub share: Share,
 }
 
-/// Which candidates are asked for.
+/// Selection of candidates.
 #[derive(Clone, Copy, Debug)]
 pub enum Which {
     /// All.
     All,
-    /// Those of a sample, the same whenever the same is asked.
+    /// Those of a sample, the same for the same input.
     Sample,
-    /// At least those that meet before a time, which lies there as bits: those of no number for none.
+    /// At least those that meet before a time, given as its bits on the device. NaN sets
+    /// no limit.
     Before(Span<u64>),
 }
 
-/// A broad phase of a scene, of what moves with itself and with what is static.
+/// A broad phase of a scene: moving bodies against each other and against static ones.
 pub trait BroadPhase<R: Precision>: Send {
-    /// Makes it anew, from the positions at t = 0; of what is static once, the first time. Volumes are not fitted yet.
+    /// Builds the structure from the positions at t = 0. The static part is built only the first
+    /// time. Volumes are not fitted yet.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn construct(&mut self, given: &BroadContext<R>, layout: &Layout) -> Result<(), Error>;
 
-    /// Reads what the host must know of what was just made; waits for it.
+    /// Reads back what the host must know of the structure just built; waits for it.
     ///
     /// # Errors
-    /// [`Error::Bug`] for what cannot be; those of the device.
+    /// [`Error::Bug`] for an impossible value; device errors.
     fn learn(&mut self) -> Result<(), Error>;
 
-    /// From the next fit on, volumes hold everything within `margin` of the triangles. Whether it must be constructed again for
-    /// that: true of static trees that were built with a smaller one.
+    /// Sets the margin: from the next fit on, volumes hold everything within `margin` of the
+    /// triangles. Returns whether the structure must be built again: true for static trees that
+    /// were built with a smaller margin.
     fn set_margin(&mut self, margin: f32) -> bool;
 
     /// Fits the volumes of the triangles.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn fit(&mut self, given: &BroadContext<R>) -> Result<(), Error>;
 
     /// Refits all other volumes.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn refit(&mut self, given: &BroadContext<R>) -> Result<(), Error>;
 
     /// Lists the pairs of triangles whose volumes overlap.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn traverse(&mut self, given: &BroadContext<R>, candidates: &Candidates) -> Result<(), Error>;
 
-    /// Its own lists, which may turn out too short: then they grow and [`BroadPhase::traverse`] runs again.
+    /// Returns its own lists. One that turns out too short grows, and [`BroadPhase::traverse`] runs
+    /// again.
     fn lists(&mut self) -> Vec<&mut dyn GrowableOutput>;
 
-    /// Whether it can list a sample, and leave out what only meets later.
+    /// Returns whether it can list a sample, and leave out pairs that only meet later.
     fn can_sample(&self) -> bool {
         false
     }
 
-    /// Prepares for a share that is not the whole.
+    /// Prepares for shares smaller than the whole.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] where work cannot be divided; those of the device.
+    /// [`Error::InvalidArgument`] if this broad phase cannot be divided; device errors.
     fn divide(&mut self, _device: &Device) -> Result<(), Error> {
         Err(Error::InvalidArgument {
-            what: "a tree that several devices go down".into(),
-            advice: "find candidates by tiles, or ask one device".into(),
+            what: "broad phase `tree` cannot be divided among several devices".into(),
+            advice: "use the broad phase `tiles`, or one device".into(),
         })
     }
 
-    /// What each tile of its last share cost, where it was divided.
+    /// Returns the cost of each tile of its last share, if it was divided.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn work(&self) -> Result<Vec<u64>, Error> {
         Ok(Vec::new())
     }
 
-    /// How many tiles beyond its last share those of the share have met.
+    /// Returns how many tiles outside its last share met tiles of the share.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn met_beyond(&self) -> Result<u64, Error> {
         Ok(0)
     }
 
-    /// The frame is answered: what was learnt may be kept for the next one.
+    /// Ends an answered frame: results may be kept for the next one.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn finish(&mut self, _counters: &Counts) -> Result<(), Error> {
         Ok(())
     }
 
-    /// Whether the next frame does without the host: else why not.
+    /// Returns whether the next frame can run without the host, else the reason.
     ///
     /// # Errors
-    /// What it needs the host for.
+    /// The reason why it needs the host.
     fn without_host(&self) -> Result<(), &'static str> {
         Ok(())
     }
 
-    /// Whether the last frame, once finished, had no front though one was asked for, or dropped it.
+    /// Returns whether the last finished frame dropped its front, or had none though the query uses
+    /// one.
     fn front_dropped(&self) -> bool {
         false
     }
 
-    /// Milliseconds that the last traversal spent on balancing; waits for it.
+    /// Returns the milliseconds that the last traversal spent on balancing; waits for it.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn balance_ms(&self) -> Result<f64, Error> {
         Ok(0.0)
     }
 
-    /// Levels of what moves and, where there is something, of what is static.
+    /// Returns the number of levels of the moving part and, if there is one, of the static part.
     fn depths(&self) -> Vec<usize>;
 
-    /// A hash of what each stage left in memory after the last frame.
+    /// Returns a hash of each stage's memory after the last frame.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error>;
 
-    /// Checks how it is made, and every volume against the positions, at t = 0 and, when anything moves, at t = 1.
+    /// Checks the structure, and every volume against the positions at t = 0 and, if anything
+    /// moves, at t = 1.
     ///
     /// # Errors
-    /// [`Error::Bug`] with the first violation; those of the device.
+    /// [`Error::Bug`] with the first violation; device errors.
     fn check(&self, layout: &Layout, faces: &[[u32; 3]], frames: &[Vec<Vec3<R>>]) -> Result<(), Error>;
 }
 
-/// The broad phase that a query asks for, over the bodies of a layout, of which some move; its volumes hold everything within
-/// `margin` of the triangles.
+/// Returns the broad phase of a query over the bodies of a layout. At least one body moves. Its
+/// volumes hold everything within `margin` of the triangles.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn broad_phase<R: Precision>(
     device: &Device,
     layout: &Layout,
@@ -221,7 +227,7 @@ pub fn broad_phase<R: Precision>(
     query.bv().with(New { device, layout, query, margin, precision: std::marker::PhantomData })
 }
 
-/// What a broad phase is made of.
+/// Arguments for the constructors of broad phases.
 struct New<'a, R> {
     device: &'a Device,
     layout: &'a Layout,
@@ -245,14 +251,14 @@ impl<R: Precision> WithVolume for New<'_, R> {
     }
 }
 
-/// How much each of two volumes grows so that what is listed makes them meet: half of the distance within which it comes,
-/// rounded up.
+/// Returns the growth of each volume that makes volumes of listed pairs overlap: half of the list's
+/// distance, rounded up.
 pub fn growth(distance: f64) -> f32 {
     let half = round::up(0.5 * distance);
     if 2.0 * f64::from(half) < distance { half.next_up() } else { half }
 }
 
-/// The volume around a triangle at t = 0 and, when there are two frames, at t = 1.
+/// Returns the volume around a triangle at t = 0 and, if there are two frames, at t = 1.
 fn leaf_volume<R: Precision, V: Kernels>(face: [u32; 3], frames: &[Vec<Vec3<R>>]) -> V {
     let corners = |frame: &Vec<Vec3<R>>| face.map(|v| frame[v as usize]);
     match frames {
@@ -261,7 +267,7 @@ fn leaf_volume<R: Precision, V: Kernels>(face: [u32; 3], frames: &[Vec<Vec3<R>>]
     }
 }
 
-/// What a checker found, as an error.
+/// Returns a checker's violation as an error.
 fn broken(violation: Violation) -> Error {
     Error::Bug { what: format!("the broad phase is broken: {violation:?}") }
 }

@@ -1,34 +1,36 @@
 //! The tree over the bodies, as prefixes of their triangles' codes.
 //!
-//! Each body takes a range of all codes that is about as large as its part of all triangles; ranges follow one another as the
-//! bodies do along a curve through their boxes, environment by environment. That is the code of Shannon, Fano and Elias (Cover,
-//! Thomas, "Elements of Information Theory", section 5.9): it keeps the order, no prefix begins another, and a body of a
-//! part p of all triangles has ceil(log2(1/p)) + 1 bits. So the tree over bodies is balanced by triangles, its depth counts
-//! as that of codes does, and a large body keeps nearly all bits for itself.
+//! Each body takes a range of the codes. Its length is about proportional to the body's part of all
+//! triangles. Ranges follow a curve through the bodies' boxes, environment by environment. This is
+//! the Shannon-Fano-Elias code (Cover, Thomas, "Elements of Information Theory", section 5.9). It
+//! keeps the order, and no prefix begins another. A body with a part p of all triangles has
+//! ceil(log2(1/p)) + 1 bits. So the tree over bodies is balanced by triangles, and its depth counts
+//! like that of codes. A large body keeps nearly all bits for itself.
 
 use nearmiss_kernels::abi::{BodyRecord, TreeBody};
 use nearmiss_kernels::bvh::CODE_BITS;
 
-/// Bits an axis of the curve through the bodies.
+/// Bits per axis of the curve through the bodies.
 const BITS: u32 = 20;
 
-/// A body's place among the codes: the box of its triangles' centres, lower corner first, and how many triangles.
+/// A body's weight: the box of its triangles' centres, and its number of triangles.
 #[derive(Clone, Copy, Debug)]
 pub struct Weight {
-    /// The box.
+    /// The box, lower corner first.
     pub bounds: [[f64; 3]; 2],
-    /// How many triangles, at least one.
+    /// Number of triangles, at least one.
     pub triangles: u32,
 }
 
-/// Sets the bodies' prefixes; `weights` and `records` are theirs, in the same order. Alone a body has none. Cost: a sort.
+/// Sets the bodies' prefixes; `weights` and `records` are in the same order. A single body has no
+/// prefix. Cost: a sort.
 pub fn prefixes(bodies: &mut [TreeBody], weights: &[Weight], records: &[BodyRecord]) {
     if bodies.len() < 2 {
         return;
     }
     let centres: Vec<[f64; 3]> = weights
         .iter()
-        // Halves first: the sum of two large coordinates may not be one.
+        // Halve first: the sum of two large coordinates may overflow.
         .map(|w| [0, 1, 2].map(|k| 0.5 * w.bounds[0][k] + 0.5 * w.bounds[1][k]))
         .collect();
     let least = |k: usize| centres.iter().map(|c| c[k]).fold(f64::INFINITY, f64::min);
@@ -38,7 +40,7 @@ pub fn prefixes(bodies: &mut [TreeBody], weights: &[Weight], records: &[BodyReco
     let cells = f64::from(1u32 << BITS);
     let along = |centre: &[f64; 3]| {
         let cell = |k: usize| {
-            // `as` saturates, and sends NaN to 0: no extent.
+            // `as` saturates and converts NaN to 0: no extent.
             (((centre[k] - low[k]) / extent * cells) as u64).min((1 << BITS) - 1)
         };
         (0..BITS).rev().fold(0u64, |code, bit| (0..3).fold(code, |code, k| code << 1 | cell(k) >> bit & 1))
@@ -76,7 +78,7 @@ mod tests {
         bodies
     }
 
-    /// The codes that begin with a body's prefix.
+    /// Returns the codes that begin with a body's prefix.
     fn range(body: &TreeBody) -> (u64, u64) {
         (body.prefix.into(), u64::from(body.prefix) + (1u64 << (CODE_BITS - body.prefix_bits)))
     }
@@ -106,7 +108,7 @@ mod tests {
         assert_eq!(of(&[5], &[0], &[0.0])[0], TreeBody::default());
         let bodies = of(&[1, (1 << 30) - 2, 1], &[0; 3], &[0.0, 1.0, 2.0]);
         assert_eq!(bodies.iter().map(|b| b.prefix_bits).collect::<Vec<_>>(), [31, 2, 31]);
-        // In one place, and not a number among them.
+        // All in one place: the extent is 0, so their cells are NaN.
         let bodies = of(&[1, 1], &[0; 2], &[f64::MAX, f64::MAX]);
         assert!(bodies[0].prefix < bodies[1].prefix);
     }

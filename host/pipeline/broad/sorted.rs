@@ -1,4 +1,4 @@
-//! Triangles in the order of a curve through space, body by body: what trees and tiles are made of.
+//! Triangles in the order of a curve through space, body by body: the input of trees and tiles.
 
 use super::prefix::{self, Weight};
 use crate::device::{Buffer, Device};
@@ -14,38 +14,42 @@ use nearmiss_kernels::bvh::centres::{KEYS, OF_A_BODY};
 use nearmiss_kernels::math::ordered;
 use nearmiss_kernels::stage::construct::{cuts, morton};
 
-/// The bytes of a code, which lies above its triangle. As many as there are: the sort ends where it began.
+/// Bit offsets of the code's bytes; the code is above the triangle in the word. Their number is
+/// even: the sort ends in the buffer where it began.
 const BYTES: [u32; 4] = [32, 40, 48, 56];
 const _: () = assert!(8 * BYTES.len() as u32 == CODE_BITS && BYTES.len().is_multiple_of(2));
 
-/// The triangles of some bodies, and the memory to order them anew: 16 bytes a triangle.
+/// Triangles of some bodies, and the memory to sort them again: 16 bytes a triangle.
 pub struct Sorted {
-    /// The bodies, in the order of their triangles, and what the kernels know of each.
+    /// The bodies, in the order of their triangles, with their records.
     bodies: Vec<TreeBody>,
     records: Vec<BodyRecord>,
     table: Buffer<TreeBody>,
     count: u32,
-    /// `None` along Morton's curve, for trees.
+    /// `None` for the Morton order, which trees use.
     order: Option<Order>,
-    /// What must be zero when it begins: what is learnt of each body; counts of each byte of the codes; what was asked for beside.
+    /// Words that are zero before a sort: bounds of each body, counts of each byte of the codes,
+    /// and the caller's words.
     begins_zero: Buffer<u64>,
-    beside: u64,
-    /// What must be zero when a level is cut: the boxes of its stretches; counts as above. None where no level of all is cut.
+    extra: u64,
+    /// Words that are zero before a level is cut: the boxes of its runs, and counts as above.
+    /// `None` if no whole level is cut.
     cuts: Option<Buffer<u64>>,
     items: [Buffer<u64>; 2],
 }
 
 impl Sorted {
-    /// Takes the memory for the triangles of these bodies, ascending, each with triangles, at least one, and `beside` words that are
-    /// zero whenever they were put in order, for tiles, or else for a tree.
+    /// Allocates memory for the triangles of these bodies. Bodies ascend, and each has at least one
+    /// triangle. `extra` is the number of the caller's words: they are zero after every sort. The
+    /// order is for tiles, or without one for a tree.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new(
         device: &Device,
         layout: &Layout,
         bodies: &[usize],
-        (order, beside): (Option<Order>, usize),
+        (order, extra): (Option<Order>, usize),
     ) -> Result<Self, Error> {
         let mut count = 0;
         let table = bodies.iter().map(|&body| {
@@ -56,7 +60,7 @@ impl Sorted {
         let table: Vec<TreeBody> = table.collect();
         let scratch = device.of(purpose::SCRATCH);
         let counts = BYTES.len() * words(device, count);
-        let zero = OF_A_BODY as usize * table.len() + counts + beside;
+        let zero = OF_A_BODY as usize * table.len() + counts + extra;
         let stretches = count.div_ceil(2 * cuts::RUN) as usize;
         let is_cut = order == Some(Order::Median) && count > cuts::RUN;
         let items = || scratch.buffer(count as usize);
@@ -67,18 +71,18 @@ impl Sorted {
             count,
             order,
             begins_zero: scratch.buffer(zero)?,
-            beside: beside as u64,
+            extra: extra as u64,
             cuts: is_cut.then(|| scratch.buffer(KEYS as usize * stretches + counts)).transpose()?,
             items: [items()?, items()?],
         })
     }
 
-    /// Puts them in order by where they are at t = 0, all on the device but for an order of the bodies, where there are more than
-    /// one: that waits for their boxes. Cost: seven launches, four of them a radix sort; one more where runs are cut, and seven a level
-    /// above them.
+    /// Sorts the triangles by their positions at t = 0. All work is on the device, except the order
+    /// of the bodies: with more than one, it waits for their boxes. Cost: seven launches, four of
+    /// them a radix sort. Cut runs add one launch, and seven for each level above them.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn construct<R: Precision>(
         &mut self,
         device: &Device,
@@ -112,7 +116,7 @@ impl Sorted {
         self.cut(device, &morton)
     }
 
-    /// Cuts what the curve has put in order.
+    /// Cuts the sorted triangles into runs.
     fn cut<R: Precision>(&mut self, device: &Device, morton: &MortonArgs<R>) -> Result<(), Error> {
         if !self.is_in_runs() {
             return Ok(());
@@ -147,7 +151,7 @@ impl Sorted {
         launch::blocks::<R::Runs>(device, runs, &args)
     }
 
-    /// Whether runs are cut, which leaves the triangles in the second list.
+    /// Returns whether runs are cut, which leaves the triangles in the second list.
     fn is_in_runs(&self) -> bool {
         matches!(self.order, Some(Order::Runs | Order::Median))
     }
@@ -156,39 +160,41 @@ impl Sorted {
         &self.items[usize::from(self.is_in_runs())]
     }
 
-    /// The triangles in order: the lower halves.
+    /// Returns the triangles in order: the lower halves of the words.
     pub fn triangles(&self) -> Span<u64> {
         self.in_order().span()
     }
 
-    /// The same, with what they were sorted by last above.
+    /// Returns the same words with their last sort keys in the upper halves.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn download(&self) -> Result<Vec<u64>, Error> {
         self.in_order().read(self.count as usize)
     }
 
-    /// The bodies and their triangles in order, without the memory to order them again. Cost: none; one of two lists is freed.
+    /// Returns the bodies and their triangles in order, without the memory to sort again. Cost:
+    /// none; one of two lists is freed.
     pub fn into_order(self) -> (Vec<TreeBody>, Buffer<u64>) {
         let is_in_runs = self.is_in_runs();
         let [curve, runs] = self.items;
         (self.bodies, if is_in_runs { runs } else { curve })
     }
 
-    /// The words that were asked for beside.
+    /// Returns the caller's zeroed words.
     pub fn zeroed(&self) -> Span<u64> {
         let all = self.begins_zero.span();
-        all.part(all.len() - self.beside, self.beside)
+        all.part(all.len() - self.extra, self.extra)
     }
 
-    /// The bodies, in the order of their triangles.
+    /// Returns the bodies, in the order of their triangles.
     pub fn bodies(&self) -> &[TreeBody] {
         &self.bodies
     }
 }
 
-/// The place of a triangle among those of a tree's bodies, `count` in all; `None` for that of another body.
+/// Returns a triangle's place among the `count` triangles of a tree's bodies; `None` if its body is
+/// not in the tree.
 pub fn place(bodies: &[TreeBody], count: u32, triangle: u32) -> Option<usize> {
     let at = bodies.partition_point(|body| body.triangle <= triangle).checked_sub(1)?;
     let end = bodies.get(at + 1).map_or(count, |next| next.before);
@@ -196,7 +202,7 @@ pub fn place(bodies: &[TreeBody], count: u32, triangle: u32) -> Option<usize> {
     (place < end).then_some(place as usize)
 }
 
-/// The bodies' boxes, of their keys, and how many triangles each has.
+/// Returns each body's box, decoded from its keys, and its number of triangles.
 fn weights(keys: &[u64], bodies: &[TreeBody], count: u32) -> Vec<Weight> {
     let ends = bodies.iter().skip(1).map(|next| next.before).chain([count]);
     let boxes = keys.chunks_exact(OF_A_BODY as usize).map(|keys| {

@@ -1,31 +1,31 @@
-//! Where a narrow phase leaves a frame's answer in the device's memory.
+//! The place of a narrow phase's answer in device memory.
 
 use crate::contacts::Entries;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::order::{Order, Ordered};
 use nearmiss_kernels::abi::{Counter, Span};
 
-/// Where a frame's answer lies in the device's memory.
+/// The place of a frame's answer in device memory.
 pub struct AnswerLists {
-    /// What the entries are.
+    /// The type of the entries.
     pub entries: Entries,
-    /// One list in order, or one of each kind: where it begins, and its room.
+    /// One ordered list, or one of each kind: its address and its room.
     pub lists: Vec<(u64, usize)>,
-    /// Whether it is the one in order.
+    /// Whether the list is ordered.
     pub is_ordered: bool,
-    /// Which counters count each kind.
+    /// The counters of each kind.
     pub counters: Vec<Counter>,
-    /// Where the earliest time is, of such a query.
+    /// The address of the earliest time, for an earliest query.
     pub earliest: Option<u64>,
-    /// Which counter counts the triangle pairs that share a point at the start; none if the start
-    /// is not checked.
+    /// The counter of the triangle pairs that share a point at the start; none if the start is not
+    /// checked.
     pub crossing: Option<Counter>,
     /// End points of every edge.
     pub edges: Span<[u32; 2]>,
 }
 
 impl AnswerLists {
-    /// Of lists of each kind, or of the one that they were ordered into.
+    /// Returns the lists of each kind, or the one that they were ordered into.
     pub fn of<T: Ordered>(entries: Entries, lists: &[&List<T>], order: Option<&Order<T>>) -> AnswerLists {
         let place = |list: &List<T>| (list.entries().addr(), list.capacity());
         let order = order.filter(|order| order.fits());

@@ -1,4 +1,5 @@
-//! Features in motion: their lists, and the launches from triangle pairs to contacts, or to the first of them.
+//! Moving features: their lists, and the launches from triangle pairs to contacts, or to the first
+//! of them.
 
 use super::features::Features;
 use super::rungs::Rungs;
@@ -20,9 +21,9 @@ use nearmiss_kernels::abi::{
     BodyTolerance, Counter, CullArgs, Hit, Pair, SolveArgs, Span, counter, earliest,
 };
 
-/// How many entries the lists of a continuous query have room for at first: vertex/face, edge/edge.
+/// Initial capacities of the lists of a continuous query: vertex/face, edge/edge.
 pub struct Capacities {
-    /// Those that may meet.
+    /// Pairs that may meet.
     pub survivors: [usize; 2],
     /// Contacts.
     pub hits: [usize; 2],
@@ -39,56 +40,57 @@ impl Capacities {
 /// A step of the phase.
 #[derive(Clone, Copy)]
 enum Step {
-    /// How many triangle pairs share a point at the start.
+    /// Counts the triangle pairs that share a point at the start.
     Start,
-    /// Vertex/face and edge/edge candidates.
+    /// Lists vertex/face and edge/edge candidates.
     Features,
-    /// Those that may meet.
+    /// Lists those that may meet.
     Cull,
-    /// Contacts.
+    /// Solves for contacts.
     Solve,
 }
 
 /// The lists of a continuous query, or of an earliest one.
 pub struct ContinuousNarrow {
     solver: ContinuousSolver,
-    /// What crosses at the start; none of a query that assumes that nothing does.
+    /// The check of the start; none for a query that assumes a start without crossings.
     start: Option<StartCheck>,
-    /// Those that may meet; there is no such step with a separation.
+    /// Pairs that may meet; `None` with a separation, which has no cull.
     survivors: Option<[List<Pair>; 2]>,
     /// Vertex/face contacts.
     pub vf_hits: List<Hit>,
     /// Edge/edge contacts.
     pub ee_hits: List<Hit>,
-    /// What certified solvers climb.
+    /// Rungs of a certified solver.
     rungs: Rungs,
-    /// Hits that are not certain, those whose budget ended, those of both, and those too large for the tolerance.
+    /// Counters: hits that are not certain, those whose iterations ran out, those with both, and
+    /// those too large for the tolerance.
     counters: [Counter; 4],
     /// The smallest tolerance above 0, if pairs have several.
     finest: Option<f64>,
     /// Whether pairs may be too large for the tolerance: see [`BelowPrecision`].
     below_precision: Option<BelowPrecision>,
-    /// The smallest toi, where only that is asked for.
+    /// The smallest toi, for an earliest query.
     earliest: Option<Buffer<u64>>,
-    /// The smallest of a sample, where that bounds the other.
+    /// The smallest toi of a sample, if it bounds the query.
     bound: Option<Buffer<u64>>,
-    /// All contacts in order, where the device orders them.
+    /// All contacts in order, if the device orders them.
     ordered: Option<Order<Hit>>,
 }
 
 impl ContinuousNarrow {
-    /// For all contacts.
+    /// Allocates the phase for all contacts.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn all(device: &Device, solver: ContinuousSolver, few: usize) -> Result<Self, Error> {
         ContinuousNarrow::new(device, solver, Capacities::usual(few))
     }
 
-    /// For the smallest time alone.
+    /// Allocates the phase for the smallest time alone.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn first(device: &Device, solver: ContinuousSolver, few: usize) -> Result<Self, Error> {
         let capacities = Capacities { hits: [0, 0], ..Capacities::usual(few) };
         let narrow = ContinuousNarrow::new(device, solver, capacities)?;
@@ -98,10 +100,10 @@ impl ContinuousNarrow {
         })
     }
 
-    /// Takes the memory, with room for so many.
+    /// Allocates the lists with these capacities.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new(device: &Device, solver: ContinuousSolver, capacities: Capacities) -> Result<Self, Error> {
         let lists = |[vf, ee]: [&'static str; 2], [vf_at, ee_at]: [Counter; 2], capacity: [usize; 2]| {
             Ok::<_, Error>([
@@ -134,16 +136,16 @@ impl ContinuousNarrow {
         })
     }
 
-    /// The same, which also counts what crosses at the start, with room for `few` pairs that
+    /// Adds the check of the start: it counts crossing pairs, with room for `few` pairs that
     /// filters leave uncertain.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn checking_start<R: Precision>(self, device: &Device, few: usize) -> Result<Self, Error> {
         Ok(ContinuousNarrow { start: Some(StartCheck::new::<R>(device, few)?), ..self })
     }
 
-    /// The steps, in their order. With a separation there is nothing that signs could reject.
+    /// Returns the steps, in order. With a separation there is no cull: signs could reject no pair.
     fn all_steps(&self) -> &'static [Step] {
         let all = match self.survivors {
             Some(_) => &[Step::Start, Step::Features, Step::Cull, Step::Solve][..],
@@ -152,23 +154,24 @@ impl ContinuousNarrow {
         if self.start.is_some() { all } else { &all[1..] }
     }
 
-    /// The time that a sample has found, if all pairs are asked behind it.
+    /// Returns the time that a sample has found, if it bounds the other pairs.
     fn known(&self, is_sample: bool) -> Span<u64> {
         self.bound.as_ref().filter(|_| !is_sample).map_or(Span::EMPTY, Buffer::span)
     }
 
-    /// Pairs that the solver tests.
+    /// Returns the pairs that the solver tests.
     fn tested<'a>(&'a self, features: &'a Features) -> [&'a List<Pair>; 2] {
         self.survivors.as_ref().unwrap_or(&features.candidates).each_ref()
     }
 
-    /// Puts pairs, vertex/face and edge/edge, among those that [`ContinuousNarrow::solve`] tests, and their numbers in `counts`.
+    /// Puts pairs, vertex/face and edge/edge, among those that [`ContinuousNarrow::solve`] tests,
+    /// and their numbers in `counts`.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     ///
     /// # Panics
-    /// When there are more than the lists have room for: a fault of the caller.
+    /// If there are more pairs than room: a fault of the caller.
     pub fn put_survivors(
         &mut self,
         features: &mut Features,
@@ -180,10 +183,10 @@ impl ContinuousNarrow {
         ee_list.put(ee, counts)
     }
 
-    /// Launches the step that leaves pairs that may meet; with a separation none.
+    /// Launches the cull, which keeps pairs that may meet; with a separation it launches nothing.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn cull<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
         let ([vf, ee], Some([may_vf, may_ee])) = (&given.features.candidates, &self.survivors) else {
             return Ok(());
@@ -205,12 +208,12 @@ impl ContinuousNarrow {
     /// Launches the solver.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn solve<R: Precision>(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
         let first = if given.is_sample { &mut self.bound } else { &mut self.earliest };
         let earliest = first.as_ref().map_or(Span::EMPTY, Buffer::span);
         if let Some(earliest) = first {
-            // The greatest number.
+            // All bits set: the greatest word.
             earliest.fill(u8::MAX)?;
         }
         let [vf, ee] = self.tested(given.features);
@@ -261,7 +264,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
 
     fn run(&mut self, step: usize, given: &NarrowContext<R>) -> Result<(), Error> {
         match self.all_steps()[step] {
-            // A sample has no more than a part of the candidates, and nothing of it is counted.
+            // A sample has only a part of the candidates, and none of it is counted.
             Step::Start => {
                 self.start.iter().filter(|_| !given.is_sample).try_for_each(|start| start.run(given))
             }
@@ -278,7 +281,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
     }
 
     fn take_samples(&mut self, device: &Device) -> Result<(), Error> {
-        // Only isolation has a time before which no answer can be.
+        // Only isolation has a time before which there is no answer.
         let isolates = self.solver.certified().is_some_and(|certified| !certified.is_apart());
         if self.earliest.is_some() && isolates {
             self.bound = Some(device.of(purpose::EARLIEST).buffer(earliest::WORDS as usize)?);
@@ -315,7 +318,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
 
     fn between<'a>(&'a self, features: &'a Features) -> Vec<(&'static str, &'a List<Pair>)> {
         if self.earliest.is_some() {
-            // What is asked of a pair hangs on what was found before.
+            // The test of a pair depends on the pairs found before it.
             return Vec::new();
         }
         let mut lists: Vec<_> = self.start.iter().flat_map(StartCheck::uncertain).collect();

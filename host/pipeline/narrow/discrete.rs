@@ -1,4 +1,4 @@
-//! Triangles at rest: their lists, and the launches from triangle pairs to those that meet.
+//! Triangles at one time: their lists, and the launches from triangle pairs to those that meet.
 
 use super::{AnswerLists, Features, Narrow, NarrowContext, growable};
 use crate::contacts::Entries;
@@ -18,17 +18,18 @@ pub struct DiscreteNarrow {
     test: TriangleTest,
     /// Pairs that meet.
     pub contacts: List<Pair>,
-    /// Pairs that each filter left to the next, the last one to exact signs; of the exact test alone.
+    /// Pairs that each filter left to the next, the last one to exact signs; only for the exact
+    /// test.
     uncertain: Vec<List<Pair>>,
-    /// The contacts in order, where the device orders them.
+    /// The contacts in order, if the device orders them.
     ordered: Option<Order<Pair>>,
 }
 
 impl DiscreteNarrow {
-    /// Takes the memory for positions of that precision, with room for `few` contacts.
+    /// Allocates the lists for positions of this precision, with room for `few` contacts.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new<R: Precision>(device: &Device, test: TriangleTest, few: usize) -> Result<Self, Error> {
         let mut uncertain = Vec::new();
         match test {
@@ -45,21 +46,22 @@ impl DiscreteNarrow {
         Ok(DiscreteNarrow { test, contacts, uncertain, ordered: None })
     }
 
-    /// The lists that the one step fills.
+    /// Returns the lists that the one step fills.
     pub fn all_lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
         let contacts = std::iter::once(&mut self.contacts as &mut dyn GrowableOutput);
         contacts.chain(growable(&mut self.uncertain)).collect()
     }
 
-    /// What each filter left to the next, with names.
+    /// Returns the pairs that each filter left to the next, with names.
     pub fn uncertain(&self) -> Vec<(&'static str, &List<Pair>)> {
         ["narrow: uncertain", "narrow: uncertain in f64"].into_iter().zip(&self.uncertain).collect()
     }
 
-    /// Launches the one step: by floats, or by floats with a bound, in f32 and in f64, and exact signs for what they leave.
+    /// Launches the one step: a floating-point test, or the exact test. The exact test has filters
+    /// with an error bound in f32 and in f64, and exact signs for the uncertain pairs.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn decide<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
         let args = |pairs: Output<Pair>, uncertain: Option<&List<Pair>>| DiscreteArgs {
             frames: given.frames,

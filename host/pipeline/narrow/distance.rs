@@ -1,4 +1,4 @@
-//! The nearest triangles: which candidates share a point, and of the others the nearest.
+//! The nearest triangles: which candidates share a point, and the nearest pair of the others.
 
 use super::{AnswerLists, DiscreteNarrow, Features, Narrow, NarrowContext};
 use crate::contacts::Entries;
@@ -16,16 +16,16 @@ use nearmiss_kernels::abi::{LeastArgs, NearestHit, Pair, Span, counter};
 /// A step of the phase.
 #[derive(Clone, Copy)]
 enum Step {
-    /// Which candidates share a point.
+    /// Lists the candidates that share a point.
     Decide,
-    /// The least distance.
+    /// Finds the least distance.
     Least,
-    /// The pair that has it.
+    /// Finds the pair that has it.
     Nearest,
 }
 
 impl Step {
-    /// All, in their order.
+    /// All steps, in order.
     const ALL: [Step; 3] = [Step::Decide, Step::Least, Step::Nearest];
 }
 
@@ -38,10 +38,11 @@ pub struct DistanceNarrow {
 }
 
 impl DistanceNarrow {
-    /// Takes the memory for positions of that precision, with room for `few` candidates that share a point.
+    /// Allocates the lists for positions of this precision, with room for `few` candidates that
+    /// share a point.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new<R: Precision>(device: &Device, few: usize) -> Result<Self, Error> {
         Ok(DistanceNarrow {
             meeting: DiscreteNarrow::new::<R>(device, TriangleTest::default(), few)?,

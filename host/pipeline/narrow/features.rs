@@ -11,28 +11,28 @@ use crate::pipeline::{launch, purpose};
 use nearmiss_kernels::abi::{Facet, FeaturesArgs, Pair, Span, counter};
 use nearmiss_kernels::entry::Entry;
 
-/// What a query of features knows of triangles, and its candidates.
+/// Topology of triangles, and the candidates of a query of features.
 pub struct Features {
     /// End points of every edge.
     pub edges: Buffer<[u32; 2]>,
     facets: Buffer<Facet>,
-    /// Vertex/face and edge/edge pairs whose boxes come within the gap.
+    /// Vertex/face and edge/edge pairs whose boxes are within the gap.
     pub candidates: [List<Pair>; 2],
 }
 
 impl Features {
-    /// No features: of a scene without a query of them.
+    /// Returns no features: for a scene without such a query.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn none(device: &Device) -> Result<Self, Error> {
         Features::new(device, &Layout::default(), [0, 0])
     }
 
-    /// Takes the memory, with room for so many candidates of each kind.
+    /// Allocates topology and lists, with room for so many candidates of each kind.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new(device: &Device, layout: &Layout, [vf, ee]: [usize; 2]) -> Result<Self, Error> {
         let topology = &layout.features;
         let facet = |((&corners, &edges), &owned)| Facet { corners, owned, edges, pad: 0 };
@@ -48,10 +48,11 @@ impl Features {
         })
     }
 
-    /// Makes room for the candidates of another query of features; topology is uploaded by the first one.
+    /// Makes room for the candidates of another query of features; the first one uploads the
+    /// topology.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn reserve(&mut self, device: &Device, layout: &Layout, room: [usize; 2]) -> Result<(), Error> {
         if self.facets.is_empty() {
             *self = Features::new(device, layout, room)?;
@@ -62,27 +63,27 @@ impl Features {
     /// Puts pairs, vertex/face and edge/edge, among the candidates, and their numbers in `counts`.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     ///
     /// # Panics
-    /// If there are more than the lists have room for: a fault of the caller.
+    /// If there are more pairs than room: a fault of the caller.
     pub fn put_candidates(&mut self, [vf, ee]: [&[Pair]; 2], counts: &mut Counts) -> Result<(), Error> {
         let [vf_list, ee_list] = &mut self.candidates;
         vf_list.put(vf, counts)?;
         ee_list.put(ee, counts)
     }
 
-    /// The lists, with names: for comparing machines.
+    /// Returns the lists, with names: for comparing machines.
     pub fn between(&self) -> Vec<(&'static str, &List<Pair>)> {
         let [vf, ee] = &self.candidates;
         vec![("narrow: vf", vf), ("narrow: ee", ee)]
     }
 
-    /// Launches the step, for what comes within the gap, by the kernel for what moves or for what does not; and, where there is a time
-    /// that is `known`, for what does so before that.
+    /// Launches the step by kernel `E`, for moving triangles or for those at one time. It lists
+    /// pairs within the gap. If a time is `known`, it lists only those within the gap before it.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn run<R: Precision, E: Entry<Args = FeaturesArgs<R>>>(
         &self,
         given: &NarrowContext<R>,

@@ -1,4 +1,5 @@
-//! Narrow: from candidates to contacts. Each kind of query has a file here; the pipeline knows of none.
+//! Narrow: from candidates to contacts. Each kind of query has a file here; the pipeline depends on
+//! none.
 
 mod answer;
 mod continuous;
@@ -28,9 +29,9 @@ use distance::DistanceNarrow;
 use near::NearNarrow;
 use nearmiss_kernels::abi::{BodyRecord, BodyTolerance, Counters, Output, Pair, Positions, Span};
 
-/// What every step of the stage is given.
+/// Inputs of every step of the stage.
 pub struct NarrowContext<'a, R: Precision> {
-    /// The machine.
+    /// The device.
     pub device: &'a Device,
     /// Positions.
     pub frames: Positions<R>,
@@ -38,102 +39,103 @@ pub struct NarrowContext<'a, R: Precision> {
     pub faces: Span<[u32; 3]>,
     /// Candidate triangle pairs.
     pub pairs: Output<Pair>,
-    /// What the kernels know of the bodies; empty where there is one alone.
+    /// Records of the bodies for the kernels; empty if there is only one body.
     pub bodies: Span<BodyRecord>,
     /// The frame's counters.
     pub counters: Counters,
-    /// Edges, what triangles own, and candidates; empty without a query of features.
+    /// Edges, owned features, and candidates; empty without a query of features.
     pub features: &'a Features,
-    /// Whether candidates are those of a sample, which is asked for a bound.
+    /// Whether candidates are those of a sample, which gives a bound.
     pub is_sample: bool,
 }
 
-/// The narrow phase of a kind of query: its steps, the lists that they fill, and what it hands over.
+/// The narrow phase of a kind of query: its steps, their lists, and its answer.
 pub trait Narrow<R: Precision>: Send {
-    /// The names of the steps, in their order; each reads what the one before filled.
+    /// Returns the names of the steps, in order; each reads the lists of the one before.
     fn steps(&self) -> Vec<&'static str>;
 
-    /// Launches the step of that place.
+    /// Launches step number `step`.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn run(&mut self, step: usize, given: &NarrowContext<R>) -> Result<(), Error>;
 
-    /// There can be samples: takes what they need, where they help.
+    /// Allocates memory for samples, if they help. Called if the broad phase can sample.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn take_samples(&mut self, _device: &Device) -> Result<(), Error> {
         Ok(())
     }
 
-    /// Where the bound of the earliest time lies that a sample finds. None where there is none.
+    /// Returns the place of the bound of the earliest time that a sample finds; `None` if there is
+    /// none.
     fn bound(&self) -> Option<Span<u64>> {
         None
     }
 
-    /// Whether it counts the triangle pairs that share a point at the start of the step.
+    /// Returns whether it counts the triangle pairs that share a point at the start of the step.
     fn checks_start(&self) -> bool {
         false
     }
 
-    /// Takes the numbers of another query of the same shape: distances, tolerances, limits.
+    /// Sets the numbers of another query of the same shape: distances, tolerances, limits.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn set(&mut self, _device: &Device, _query: &Query, _tolerances: &[BodyTolerance]) -> Result<(), Error> {
         Ok(())
     }
 
-    /// The lists that the step of that place fills.
+    /// Returns the lists that step number `step` fills.
     fn lists<'a>(&'a mut self, step: usize, features: &'a mut Features) -> Vec<&'a mut dyn GrowableOutput>;
 
-    /// The lists between candidates and contacts, with names: for comparing machines. None of those that hang on the order in
-    /// which lanes came.
+    /// Returns the lists between candidates and contacts, with names: for comparing machines. Lists
+    /// that depend on the order of lanes are left out.
     fn between<'a>(&'a self, features: &'a Features) -> Vec<(&'static str, &'a List<Pair>)>;
 
-    /// The bodies are there now: how large they are may matter.
+    /// Updates for new positions: the size of the bodies may matter.
     fn place(&mut self, _bodies: &[Body]) {}
 
-    /// How the device orders what is found; none where there is nothing to order.
+    /// Returns the device's ordering; none if there is nothing to order.
     fn ordering(&mut self) -> Option<&mut dyn Ordering>;
 
-    /// Has the device put into order what it finds, with room for so many at first.
+    /// Makes the device order its results, with room for `room` of them at first.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn order_on(&mut self, device: &Device, layout: &Layout, room: usize) -> Result<(), Error> {
         self.ordering().map_or(Ok(()), |ordering| ordering.begin(device, layout, room))
     }
 
-    /// What the device has put into order; none where the host does that.
+    /// Returns the list that the device has ordered; none if the host orders.
     fn ordered(&mut self) -> Option<&mut dyn GrowableOutput> {
         self.ordering().and_then(Ordering::list)
     }
 
-    /// Launches the ordering, where the device does that.
+    /// Launches the ordering, if the device orders.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn order(&mut self, given: &NarrowContext<R>) -> Result<(), Error>;
 
-    /// What [`Narrow::gather`] will look at, by the counters of the last frame.
+    /// Returns the memory that [`Narrow::gather`] will read, by the counters of the last frame.
     fn ahead(&self, last: &Counts) -> Vec<Ahead<'_>>;
 
-    /// What was found, by the frame's counters, and whether it is in canonical order.
+    /// Returns the results, by the frame's counters, and whether they are in canonical order.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn gather(&self, counters: &Counts) -> Result<(Listed<'_>, bool), Error>;
 
-    /// Where that lies.
+    /// Returns the place of the answer.
     fn answer(&self, features: &Features) -> AnswerLists;
 }
 
-/// The narrow phase of a query, with room for `few` of its candidates at first.
+/// Returns the narrow phase of a query, with room for `few` of its candidates at first.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn narrow<R: Precision>(
     device: &Device,
     layout: &Layout,
@@ -159,7 +161,7 @@ pub fn narrow<R: Precision>(
     Ok(narrow)
 }
 
-/// Lists as what grows.
+/// Returns lists as outputs that can grow.
 fn growable<'a, T: GrowableOutput + 'a>(
     lists: impl IntoIterator<Item = &'a mut T>,
 ) -> impl Iterator<Item = &'a mut dyn GrowableOutput> {

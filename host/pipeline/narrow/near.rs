@@ -1,4 +1,5 @@
-//! Features at rest: their lists, and the launches from triangle pairs to those within a distance.
+//! Features at one time: their lists, and the launches from triangle pairs to those within a
+//! distance.
 
 use super::features::Features;
 use super::{AnswerLists, Narrow, NarrowContext, growable};
@@ -17,14 +18,14 @@ use nearmiss_kernels::abi::{BodyTolerance, Counter, NearArgs, NearHit, Pair, Spa
 /// A step of the phase.
 #[derive(Clone, Copy)]
 enum Step {
-    /// Vertex/face and edge/edge candidates.
+    /// Lists vertex/face and edge/edge candidates.
     Features,
-    /// Those within the distance.
+    /// Lists those within the distance.
     Near,
 }
 
 impl Step {
-    /// All, in their order.
+    /// All steps, in order.
     const ALL: [Step; 2] = [Step::Features, Step::Near];
 }
 
@@ -35,17 +36,17 @@ pub struct NearNarrow {
     vf_hits: List<NearHit>,
     /// Edges within the distance.
     ee_hits: List<NearHit>,
-    /// Hits that are not certainly within it.
+    /// Counter of hits that are not certainly within the distance.
     undecided: Counter,
-    /// All hits in order, where the device orders them.
+    /// All hits in order, if the device orders them.
     ordered: Option<Order<NearHit>>,
 }
 
 impl NearNarrow {
-    /// Takes the memory, with room for `few` hits.
+    /// Allocates the lists, with room for `few` hits.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new(device: &Device, distance: f64, few: usize) -> Result<Self, Error> {
         Ok(NearNarrow {
             distance,

@@ -1,4 +1,4 @@
-//! The ladder of certified solvers: which rungs a query has, the lists between them, their launches.
+//! The ladder of certified solvers: the rungs of a query, the lists between them, their launches.
 
 use super::NarrowContext;
 use crate::device::{Buffer, Device};
@@ -21,17 +21,17 @@ enum Rung {
     Isolate64,
     /// Touching at the start, and flat motion.
     Settle,
-    /// The window in slices.
+    /// The time window in slices.
     Slice,
-    /// The first step to a separation, in f32.
+    /// The first step of separation, in f32.
     SeparateFirst,
-    /// A separation, in f32.
+    /// Separation, in f32.
     Separate32,
-    /// A separation, in f64.
+    /// Separation, in f64.
     Separate64,
 }
 
-/// The rungs of a solver.
+/// Returns the rungs of a solver.
 fn rungs(certified: &Certified) -> &'static [Rung] {
     match (certified.precision, certified.is_apart()) {
         (CertifiedPrecision::F64, true) => &[Rung::Separate64],
@@ -44,7 +44,8 @@ fn rungs(certified: &Certified) -> &'static [Rung] {
     }
 }
 
-/// What a rung leaves: a name for machines to be compared by, and for a list that is too long; the counters.
+/// The lists that rungs leave: a name for comparisons of machines, a name for errors, and the
+/// counter.
 const LEFT: [[(&str, &str, Counter); 2]; 3] = [
     [
         ("narrow: vf for f64", "vertex/face pairs for f64", counter::VF_ESCALATED),
@@ -61,7 +62,7 @@ const LEFT: [[(&str, &str, Counter); 2]; 3] = [
 ];
 
 impl Rung {
-    /// Which of the lists its rest goes to.
+    /// Returns which of these lists its undecided pairs go to.
     fn left(self) -> usize {
         match self {
             Rung::Isolate32 | Rung::Separate32 => 0,
@@ -71,25 +72,25 @@ impl Rung {
     }
 }
 
-/// The rungs of a certified solver, and what lies between them; of another solver nothing.
+/// The rungs of a certified solver, and the lists between them; empty for another solver.
 pub struct Rungs {
     certified: Certified,
     rungs: &'static [Rung],
-    /// What each rung but the last leaves: vertex/face, edge/edge.
+    /// Pairs that each rung except the last leaves: vertex/face, edge/edge.
     left: Vec<[List<Pair>; 2]>,
-    /// Which of [`LEFT`] each is.
+    /// Index into [`LEFT`] of each.
     names: Vec<usize>,
     /// Tolerances of bodies; empty if all pairs have the same.
     tolerances: Buffer<BodyTolerance>,
-    /// What `tolerances` holds.
+    /// The values in `tolerances`.
     held: Vec<BodyTolerance>,
 }
 
 impl Rungs {
-    /// Takes the memory.
+    /// Allocates the lists.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new(device: &Device, certified: Option<&Certified>, capacity: [usize; 2]) -> Result<Self, Error> {
         let rungs = certified.map_or(&[][..], rungs);
         let names: Vec<_> = rungs.iter().rev().skip(1).rev().map(|rung| rung.left()).collect();
@@ -105,10 +106,11 @@ impl Rungs {
         Ok(Rungs { certified, rungs, left, names, tolerances, held: Vec::new() })
     }
 
-    /// Takes the numbers of another solver of the same precision, and the tolerances of bodies; none if all pairs have the same.
+    /// Sets the numbers of another solver of the same precision, and the tolerances of bodies;
+    /// these are empty if all pairs have the same.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn set(
         &mut self,
         device: &Device,
@@ -123,17 +125,17 @@ impl Rungs {
         Ok(())
     }
 
-    /// The tolerances of bodies; empty if all pairs have the same.
+    /// Returns the tolerances of bodies; empty if all pairs have the same.
     pub fn tolerances(&self) -> Span<BodyTolerance> {
         self.tolerances.span()
     }
 
-    /// The lists that the rungs fill.
+    /// Returns the lists that the rungs fill.
     pub fn lists(&mut self) -> impl Iterator<Item = &mut dyn GrowableOutput> {
         self.left.iter_mut().flatten().map(|list| list as &mut dyn GrowableOutput)
     }
 
-    /// The lists, with names.
+    /// Returns the lists, with names.
     pub fn between(&self) -> impl Iterator<Item = (&'static str, &List<Pair>)> {
         self.names
             .iter()
@@ -141,23 +143,23 @@ impl Rungs {
             .flat_map(|(&at, [vf, ee])| [(LEFT[at][0].0, vf), (LEFT[at][1].0, ee)])
     }
 
-    /// Launches the rungs, the first over `asked`: all, or those that find most of what there is of a sample. The others would cost
-    /// launches for little.
+    /// Launches the rungs, the first one over `first`. For a sample it launches only the rungs that
+    /// find most contacts: the others would cost launches for little.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn climb<R: Precision>(
         &self,
         given: &NarrowContext<R>,
         (edges, sample): (Span<[u32; 2]>, bool),
-        (asked, hits, earliest): ([&List<Pair>; 2], [&List<Hit>; 2], Span<u64>),
+        (first, hits, earliest): ([&List<Pair>; 2], [&List<Hit>; 2], Span<u64>),
     ) -> Result<(), Error> {
         let listed = |pairs: &List<Pair>, hits: &List<Hit>, left: Option<&List<Pair>>| Listed {
             pairs: pairs.output(given.counters),
             hits: hits.output(given.counters),
             left: left.map_or(Output::EMPTY, |list| list.output(given.counters)),
         };
-        let mut pairs = asked;
+        let mut pairs = first;
         for (at, &rung) in self.rungs.iter().enumerate() {
             if sample && !matches!(rung, Rung::Isolate32 | Rung::Isolate64) {
                 break;
@@ -196,7 +198,7 @@ fn start<R: Precision>(
         Rung::Isolate32 => launch::striding::<R::Isolate32>(device, capacity, args),
         Rung::Isolate64 => launch::striding::<R::Isolate64>(device, capacity, args),
         Rung::Settle => launch::striding::<R::Settle>(device, capacity, args),
-        // A block a pair; there are few.
+        // A block per pair; there are few.
         Rung::Slice => {
             launch::at_once::<R::Slice>(device, capacity.saturating_mul(R::Slice::LANES as usize), args)
         }

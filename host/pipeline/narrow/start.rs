@@ -1,4 +1,4 @@
-//! The triangle pairs of a step that share a point at its start: counted, by the kernels of a
+//! The triangle pairs that share a point at the start of a step: counted, by the kernels of a
 //! discrete query.
 
 use super::{NarrowContext, growable};
@@ -18,10 +18,10 @@ pub struct StartCheck {
 }
 
 impl StartCheck {
-    /// Takes the memory for positions of that precision, with room for `few` uncertain pairs.
+    /// Allocates the lists for positions of this precision, with room for `few` uncertain pairs.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new<R: Precision>(device: &Device, few: usize) -> Result<Self, Error> {
         let list = |name, at, room| List::new(device, name, at, room);
         let mut uncertain = vec![list("pairs uncertain at the start", counter::UNCERTAIN, few)?];
@@ -32,24 +32,24 @@ impl StartCheck {
         Ok(StartCheck { uncertain, crossing: counter::STARTS_CROSSING })
     }
 
-    /// The lists that the step fills.
+    /// Returns the lists that the step fills.
     pub fn lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
         let crossing = std::iter::once(&mut self.crossing as &mut dyn GrowableOutput);
         crossing.chain(growable(&mut self.uncertain)).collect()
     }
 
-    /// What each filter left to the next, with names.
+    /// Returns the pairs that each filter left to the next, with names.
     pub fn uncertain(&self) -> impl Iterator<Item = (&'static str, &List<Pair>)> {
         ["narrow: uncertain at the start", "narrow: uncertain at the start in f64"]
             .into_iter()
             .zip(&self.uncertain)
     }
 
-    /// Launches the step over all candidates: signs with an error bound, in f32 and in f64, and
-    /// exact signs for what they leave.
+    /// Launches the step over all candidates: filters with an error bound in f32 and in f64, and
+    /// exact signs for the uncertain pairs.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn run<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
         let args = |pairs: Output<Pair>, uncertain: Option<&List<Pair>>| DiscreteArgs {
             frames: given.frames,

@@ -1,4 +1,4 @@
-//! Bodies whose vertices or poses lie in memory of the caller.
+//! Bodies whose vertices or poses are in memory of the caller.
 
 use super::{Last, Placing, write};
 use crate::device::{Ahead, Buffer, Device};
@@ -9,13 +9,13 @@ use crate::pipeline::precision::Precision;
 use crate::scene::Pose;
 use nearmiss_kernels::abi::{Lent, PoseRecord, Span, seen};
 
-/// What placing from memory of the caller needs.
+/// Memory to place bodies from the caller's memory.
 pub struct LentMemory {
-    /// Where the numbers lie.
+    /// Addresses of the caller's numbers.
     pub places: Buffer<Lent>,
-    /// What `places` holds.
+    /// The values in `places`.
     held: Vec<Lent>,
-    /// Poses as they were found: two of each body, of which the second is that of a step.
+    /// Poses that the kernel read: two per body, the second at the end of a step.
     pub found: Buffer<PoseRecord>,
     /// See [`seen`].
     pub seen: Buffer<u64>,
@@ -23,33 +23,34 @@ pub struct LentMemory {
     pub any: bool,
 }
 
-/// What placing saw of the caller's numbers.
+/// Checks of the caller's numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
-    /// Whether some of them cannot be computed with.
+    /// Whether some of them are invalid, as NaN is.
     pub invalid: bool,
-    /// The largest size of the others.
+    /// The largest magnitude of the others.
     pub largest: f64,
 }
 
-/// Where all bodies are, as the device knows it.
+/// Positions of all bodies, as the device has them.
 pub struct Whereabouts {
     /// All vertices, at both ends or at the only one.
     pub ends: Vec<mesh::Positions>,
-    /// How many of these a frame looks at: one, where the other is that of steps of which the
-    /// caller's memory had both ends.
+    /// Number of these ends that a frame reads. One, if the other end only serves steps with both
+    /// ends in the caller's memory.
     pub looked_at: usize,
-    /// Poses that were found in memory of the caller, at as many ends, of each body; others are none.
+    /// Poses that were read from the caller's memory, at as many ends, of each body; default poses
+    /// for the others.
     pub poses: Vec<Pose>,
-    /// What placing saw of the caller's numbers; `None` if it read none.
+    /// Checks of the caller's numbers; `None` if none were read.
     pub seen: Option<Seen>,
 }
 
 impl LentMemory {
-    /// None yet.
+    /// Allocates empty memory.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new(device: &Device) -> Result<LentMemory, Error> {
         Ok(LentMemory {
             places: device.buffer(0)?,
@@ -60,10 +61,11 @@ impl LentMemory {
         })
     }
 
-    /// Puts places of the caller's memory where a launch finds them, and takes what it writes: room for so many poses.
+    /// Uploads addresses of the caller's memory, and allocates room for `poses` poses that a launch
+    /// reads.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn hold(&mut self, device: &Device, places: Vec<Lent>, poses: usize) -> Result<(), Error> {
         self.any = !places.is_empty();
         if !self.any {
@@ -83,10 +85,11 @@ impl LentMemory {
 }
 
 impl<R: Precision> Placing<R> {
-    /// Places once more what the last frame placed, from where it lay: a launch, and no word of the host.
+    /// Places the bodies of the last frame again, from the same addresses: a launch, and no
+    /// transfer from the host.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn again(&mut self, device: &Device) -> Result<(), Error> {
         let Last::Device(args) = &self.last else { return Ok(()) };
         self.is_at_rest_current = false;
@@ -96,25 +99,25 @@ impl<R: Precision> Placing<R> {
         launch::striding::<R::Place>(&device.undisturbed(), args.count as usize, args)
     }
 
-    /// Whether the last frame placed nothing, or only what lies on the device.
+    /// Returns whether the last frame placed nothing, or only from device memory.
     pub fn is_repeatable(&self) -> bool {
         !matches!(self.last, Last::Host)
     }
 
-    /// What is to be read ahead of what [`Placing::seen`] reads.
+    /// Returns the memory that [`Placing::seen`] reads, to be read ahead.
     pub fn ahead(&self) -> Option<Ahead<'_>> {
         self.lent.any.then(|| self.lent.seen.ahead(seen::COUNT as usize))
     }
 
-    /// Where a kernel finds what was seen of the caller's numbers.
+    /// Returns the checks of the caller's numbers, for a kernel.
     pub fn seen_span(&self) -> Span<u64> {
         self.lent.seen.span()
     }
 
-    /// What the last frame saw of the caller's numbers; `None` where it read none.
+    /// Returns the last frame's checks of the caller's numbers; `None` if it read none.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn seen(&self) -> Result<Option<Seen>, Error> {
         if !self.lent.any {
             return Ok(None);
@@ -124,10 +127,10 @@ impl<R: Precision> Placing<R> {
         Ok(Some(Seen { invalid: word(seen::INVALID) > 0, largest: f64::from_bits(word(seen::LARGEST)) }))
     }
 
-    /// Where all bodies are.
+    /// Returns the positions of all bodies.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn whereabouts(&self) -> Result<Whereabouts, Error> {
         let mut ends = self.all_positions()?;
         let looked_at = ends.len();
@@ -140,7 +143,7 @@ impl<R: Precision> Placing<R> {
             }
             ends.push(end);
         }
-        // The second pose of a body is one where it has two ends.
+        // The second pose of a body is valid if it has two ends.
         let found = self.poses()?;
         let has_end = |body: usize| looked_at == 2 || self.keeps[body];
         let of = |(body, found): (usize, &[Pose])| {
@@ -151,10 +154,10 @@ impl<R: Precision> Placing<R> {
         Ok(Whereabouts { ends: ends.into_iter().map(R::positions).collect(), looked_at, poses, seen })
     }
 
-    /// The poses alone, as of [`Whereabouts::poses`].
+    /// Returns the poses alone, as in [`Whereabouts::poses`].
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn poses(&self) -> Result<Vec<Pose>, Error> {
         let pose = |found: &PoseRecord| Pose { rotation: found.rotation, translation: found.translation };
         Ok(self.lent.found.read(self.lent.found.len())?.iter().map(pose).collect())

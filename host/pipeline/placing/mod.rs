@@ -1,4 +1,4 @@
-//! Place: the vertices of all bodies on the device, where frames put them.
+//! Place: the vertices of all bodies on the device, at the positions of each frame.
 
 mod lent;
 
@@ -22,15 +22,15 @@ use nearmiss_kernels::math::{Real, Vec3};
 /// A body that a frame moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Moved {
-    /// Which body.
+    /// The body's index.
     pub body: usize,
-    /// Whether it rests at the end of the last step, instead of being where it now is.
+    /// Whether it rests at the end of the last step, instead of at its new position.
     pub rests: bool,
 }
 
 impl Moved {
-    /// As vertices with one end take it: what the host knows is placed where it now is; the device
-    /// has only the other's end.
+    /// Returns the move for vertices with one end. A body that the host knows is placed at its new
+    /// position; only the device has the end of the others.
     fn at_one_end(self, bodies: &[Body]) -> Moved {
         Moved { rests: self.rests && bodies[self.body].is_device_resident(), ..self }
     }
@@ -61,8 +61,8 @@ impl<R: Precision> Vertices<R> {
         }
     }
 
-    /// Sets the first vertices: those of the bodies, one behind the other. A body that stands still has the same positions at
-    /// both ends.
+    /// Sets the first vertices: those of the bodies, one behind the other. A body that stands still
+    /// has the same positions at both ends.
     fn write<'a>(&mut self, bodies: impl Iterator<Item = &'a Body>) -> Result<(), Error> {
         match self {
             Vertices::Still(buffer) => {
@@ -85,47 +85,48 @@ impl<R: Precision> Vertices<R> {
     }
 }
 
-/// What the last frame placed.
+/// The source of the last frame's placing.
 enum Last<R: Real> {
-    /// Nothing.
+    /// None.
     Nothing,
-    /// What lies on the device: it can be placed again.
+    /// Device memory: it can be placed again.
     Device(PlaceArgs<R>),
-    /// What came from the host.
+    /// Host memory.
     Host,
 }
 
-/// The vertices of a scene, and what moving them needs.
+/// The vertices of a scene, and the memory to move them.
 pub struct Placing<R: Precision> {
     vertices: Vertices<R>,
-    /// Positions at t = 0 apart, if vertices have two ends and a query at rest was asked; and whether they are those of now.
+    /// Positions at t = 0 alone, if vertices have two ends and a query reads one; and whether they
+    /// are current.
     at_rest: Buffer<Point<R>>,
     is_at_rest_current: bool,
-    /// Vertices of rigid bodies without a pose, and where each body's begin.
+    /// Vertices of rigid bodies without a pose, and each body's start there.
     rest: Buffer<Point<R>>,
     rest_starts: Vec<u32>,
-    /// Each body's first vertex, and where the last one's end.
+    /// Each body's first vertex, then the end of the last one.
     starts: Vec<u32>,
-    /// Where vertices have one end: ends of steps of which the caller's memory had both, and which
-    /// bodies' those are.
+    /// For vertices with one end: ends of steps with both ends in the caller's memory, and which
+    /// bodies have them.
     later: Buffer<Point<R>>,
     keeps: Vec<bool>,
-    /// Of the last frame: vertices that came from the host, where not all did; who was moved, and how.
+    /// The last frame's data: vertices that came from the host, unless all did, and the placements.
     uploaded: Vertices<R>,
     placements: Buffer<Placement>,
     poses: Buffer<PoseRecord>,
-    /// What `placements` holds.
+    /// The values in `placements`.
     placed: Vec<Placement>,
-    /// Of bodies in memory of the caller; empty before there are any.
+    /// Data of bodies in memory of the caller; empty if there are none.
     lent: LentMemory,
     last: Last<R>,
 }
 
 impl<R: Precision> Placing<R> {
-    /// Takes the memory for bodies, in motion or still, and puts them where they are.
+    /// Allocates the vertices of bodies, moving or still, and places them.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new(device: &Device, layout: &Layout, bodies: &[Body], moving: bool) -> Result<Self, Error> {
         let is_rigid = |body: &&Body| body.kind() == BodyKind::Rigid;
         let rest: Vec<Point<R>> = bodies
@@ -164,7 +165,8 @@ impl<R: Precision> Placing<R> {
         Ok(placing)
     }
 
-    /// Positions for a query at rest, or in motion, which are [ready](Placing::ready).
+    /// Returns positions for a query at one time, or in motion; they must be
+    /// [ready](Placing::ready).
     pub fn frames(&self, at_rest: bool) -> Positions<R> {
         match &self.vertices {
             Vertices::Moving(_) if at_rest => Positions { still: self.at_rest.span(), moving: Span::EMPTY },
@@ -172,15 +174,16 @@ impl<R: Precision> Placing<R> {
         }
     }
 
-    /// Whether positions are ready for a query at rest, or in motion.
+    /// Returns whether positions are ready for a query at one time, or in motion.
     pub fn is_ready(&self, at_rest: bool) -> bool {
         !at_rest || self.is_at_rest_current || matches!(self.vertices, Vertices::Still(_))
     }
 
-    /// Readies positions at t = 0 apart from those at the end of the step. Cost: a launch, and no word of the host.
+    /// Copies positions at t = 0 from those of the whole step. Cost: a launch, and no transfer from
+    /// the host.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn ready(&mut self, device: &Device) -> Result<(), Error> {
         let Vertices::Moving(motions) = &self.vertices else { return Ok(()) };
         if self.at_rest.len() != motions.len() {
@@ -192,10 +195,10 @@ impl<R: Precision> Placing<R> {
         Ok(())
     }
 
-    /// Positions as a query at rest, or in motion, sees them: at t = 0 and, in motion, at t = 1.
+    /// Returns the positions that a query reads: at t = 0 and, in motion, at t = 1.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn positions(&self, at_rest: bool) -> Result<Vec<Vec<Vec3<R>>>, Error> {
         let mut ends = self.all_positions()?;
         ends.truncate(if at_rest { 1 } else { 2 });
@@ -212,14 +215,14 @@ impl<R: Precision> Placing<R> {
         })
     }
 
-    /// Moves bodies, named in ascending order. One launch, and an upload of positions, of poses and, where others were moved
-    /// than in the frame before, of whom; of deformable bodies alone, when all are moved, an upload
-    /// and no launch. Where vertices have one end, bodies of the host that rest are placed by a
-    /// launch before that of the caller's memory, which alone is placed
-    /// [again](Placing::again).
+    /// Moves bodies, named in ascending order. It uploads positions and poses, and placements if
+    /// other bodies move than in the frame before; then it launches once. If all bodies are
+    /// deformable and all move, it uploads and launches nothing. For vertices with one end, resting
+    /// bodies of the host have a launch of their own. It runs before that for the caller's memory,
+    /// which alone is placed [again](Placing::again).
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn put(&mut self, device: &Device, bodies: &[Body], moved: &[Moved]) -> Result<(), Error> {
         self.is_at_rest_current = false;
         if matches!(self.vertices, Vertices::Moving(_)) {
@@ -321,7 +324,7 @@ impl<R: Precision> Placing<R> {
     }
 }
 
-/// Sets the first elements of a buffer, which grows where it must.
+/// Sets the first elements of a buffer, which grows if it must.
 fn write<T: Pod>(device: &Device, buffer: &mut Buffer<T>, items: &[T]) -> Result<(), Error> {
     if items.len() > buffer.len() {
         *buffer = device.buffer(items.len())?;

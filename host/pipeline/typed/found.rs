@@ -1,4 +1,4 @@
-//! The end of a frame: what the kernels found comes to the host.
+//! The end of a frame: the kernels' results come to the host.
 
 use super::query::QueryMemory;
 use super::scene::SceneMemory;
@@ -12,8 +12,7 @@ use crate::pipeline::precision::Precision;
 use bytemuck::Pod;
 use nearmiss_kernels::abi::{Hit, NearHit, NearestHit, Pair};
 
-/// What the kernels found, still in the numbering of the memory that all bodies share, and where it is possible in that
-/// memory.
+/// The kernels' results, still with the indices of the layout and, if possible, in device memory.
 pub enum Listed<'a> {
     /// Triangle pairs, discrete.
     Pairs(View<'a, Pair>),
@@ -28,37 +27,37 @@ pub enum Listed<'a> {
     Earliest {
         /// The smallest toi, if there is one.
         toi: Option<f64>,
-        /// Whether that is the time of a pair that is neither certain to meet nor certain to stay apart, and of no contact.
+        /// Whether that time is of an undecided pair and of no contact.
         undecided: bool,
         /// Whether pairs may be too large for the tolerance in the solver's precision.
         below_precision: bool,
     },
-    /// Features at rest within the distance.
+    /// Features within the distance, at one time.
     Near(Hits<'a, NearHit>),
-    /// The nearest triangles: one pair, or none where nothing is asked about.
+    /// The nearest triangles: one pair, or none if no pair is tested.
     Nearest(View<'a, NearestHit>),
 }
 
-/// What a frame came to.
+/// The results of a frame.
 pub struct Found<'a> {
-    /// What the kernels found.
+    /// The kernels' results.
     pub listed: Listed<'a>,
-    /// Whether it is in canonical order already.
+    /// Whether they are in canonical order already.
     pub ordered: bool,
-    /// What was counted.
+    /// The frame's counters.
     pub counters: Counts,
-    /// How often a list was too short and part of the frame ran again.
+    /// How often a list was too short and part of the frame reran.
     pub reruns: u64,
     /// Whether the walk's front did not pay.
     pub front_dropped: bool,
     /// Whether the triangle pairs that share a point at the start of the step were counted.
     pub is_start_checked: bool,
-    /// What was seen of positions in memory of the caller; `None` where there are none.
+    /// Checks of positions in the caller's memory; `None` if there are none.
     pub seen: Option<Seen>,
 }
 
 impl Found<'_> {
-    /// Bytes of the answer.
+    /// Returns the bytes of the answer.
     pub fn bytes(&self) -> u64 {
         let bytes = match &self.listed {
             Listed::Pairs(pairs) => size_of_val(&**pairs),
@@ -70,19 +69,19 @@ impl Found<'_> {
     }
 }
 
-/// Pairs of features, vertex/face and edge/edge: contacts in motion, or such within a distance.
+/// Pairs of features, vertex/face and edge/edge: contacts in motion, or pairs within a distance.
 pub enum Hits<'a, T: Pod = Hit> {
-    /// A list of each.
+    /// One list of each kind.
     Lists([View<'a, T>; 2]),
-    /// One list, those of vertices first, and how many they are.
+    /// One list, vertex/face first, and the number of these.
     One(View<'a, T>, usize),
 }
 
 impl<'a, T: Ordered> Hits<'a, T> {
-    /// Those of two lists, in order if the device has put them so; and whether it has.
+    /// Returns the hits of two lists, in order if the device has ordered them; and whether it has.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn of(
         lists: [&'a List<T>; 2],
         order: Option<&'a Order<T>>,
@@ -94,7 +93,7 @@ impl<'a, T: Ordered> Hits<'a, T> {
         })
     }
 
-    /// What is to be read ahead of them, by the counters of the last frame.
+    /// Returns the memory to read ahead, by the counters of the last frame.
     pub fn ahead(lists: [&'a List<T>; 2], order: Option<&'a Order<T>>, last: &Counts) -> Vec<Ahead<'a>> {
         match order {
             Some(order) => vec![order.list.ahead(last)],
@@ -104,12 +103,12 @@ impl<'a, T: Ordered> Hits<'a, T> {
 }
 
 impl<T: Pod> Hits<'_, T> {
-    /// How many they are.
+    /// Returns the number of hits.
     fn count(&self) -> usize {
         self.each().iter().map(|list| list.len()).sum()
     }
 
-    /// Both.
+    /// Returns the hits of both kinds.
     pub fn each(&self) -> [&[T]; 2] {
         match self {
             Hits::Lists([vf, ee]) => [vf, ee],
@@ -121,10 +120,10 @@ impl<T: Pod> Hits<'_, T> {
     }
 }
 
-/// The contacts of the lists in canonical order, if the device has put them so.
+/// Returns the contacts of the lists in canonical order, if the device has ordered them.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn in_order<'a, T: Ordered>(
     order: Option<&'a Order<T>>,
     counters: &Counts,
@@ -134,7 +133,8 @@ pub fn in_order<'a, T: Ordered>(
 }
 
 impl<R: Precision> QueryMemory<R> {
-    /// Brings over with one wait what the end of a frame reads: counters, and as many contacts as the last frame had.
+    /// Downloads the data that the end of a frame reads, with one wait: counters, and as many
+    /// contacts as the last frame had.
     pub(super) fn read_ahead(&self, scene: &SceneMemory<R>) -> Result<(), Error> {
         let mut all = vec![self.counters.ahead()];
         all.extend(scene.vertices.ahead());

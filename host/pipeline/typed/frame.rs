@@ -1,4 +1,4 @@
-//! All that a frame launches, and when its stages were over.
+//! All launches of a frame, and the times of its stages.
 
 use super::Found;
 use super::query::QueryMemory;
@@ -11,7 +11,7 @@ use crate::stages::{Stage, Stages};
 use nearmiss_kernels::abi::TraverseFlags;
 use std::time::Instant;
 
-/// The marks of a frame.
+/// The time marks of a frame.
 #[derive(Clone, Copy)]
 enum Mark {
     Begun,
@@ -23,19 +23,19 @@ enum Mark {
     Ordered,
 }
 
-/// What frames launch, with their marks; nothing yet.
+/// Returns an empty record of launches, with the marks of a frame.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn replay(device: &Device) -> Result<Replay, Error> {
     Replay::new(device, Mark::Ordered as usize + 1)
 }
 
 impl<R: Precision> QueryMemory<R> {
-    /// One frame: see [`Pipeline::frame`](super::Pipeline::frame).
+    /// Runs one frame: see [`Pipeline::frame`](super::Pipeline::frame).
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub(super) fn frame<'a>(&'a mut self, scene: &mut SceneMemory<R>) -> Result<(Found<'a>, Stages), Error> {
         let reruns = self.reruns;
         self.launch_ms = 0.0;
@@ -48,7 +48,7 @@ impl<R: Precision> QueryMemory<R> {
             let counters = self.counters.read()?;
             self.demand.counted(&counters, &scene.device)?;
             if self.has_overflowed(scene, &counters) {
-                // Some list, somewhere: find out step by step.
+                // Some list is too short: run step by step to find it.
                 self.settled = false;
                 self.reruns += 1;
                 continue;
@@ -61,14 +61,15 @@ impl<R: Precision> QueryMemory<R> {
         }
     }
 
-    /// Starts all of a frame, with what it marks; the volumes are fitted, or were in this frame.
+    /// Launches a frame, with its marks. Unless `fits`, the volumes were already fitted in this
+    /// frame.
     fn launch(&mut self, scene: &mut SceneMemory<R>, fits: bool) -> Result<(), Error> {
         let (device, mut replay) = (scene.device.clone(), std::mem::take(&mut self.replay));
         let start = Instant::now();
         let is_listed = self.settled && scene.broads[self.broad].phase.without_host().is_ok();
         let frame = |marks: &mut Marks| self.stages(scene, fits, marks);
         let done = if is_listed {
-            // SAFETY: settled stages launch and clear; what memory they hold they keep.
+            // SAFETY: settled stages launch and clear; they keep the memory that they hold.
             unsafe { replay.run(&device, frame) }
         } else {
             replay.straight(&device, frame)
@@ -78,10 +79,10 @@ impl<R: Precision> QueryMemory<R> {
         done
     }
 
-    /// Starts the walk.
+    /// Launches the traversal.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub(super) fn traverse(&mut self, scene: &mut SceneMemory<R>, which: Which) -> Result<(), Error> {
         let counters = self.counters.counters();
         let candidates = Candidates {
@@ -113,7 +114,7 @@ impl<R: Precision> QueryMemory<R> {
         pass(Mark::Ordered)
     }
 
-    /// How long the stages took, by their marks; waits for them.
+    /// Returns the times of the stages, from their marks; waits for them.
     fn marked(&mut self, scene: &mut SceneMemory<R>) -> Result<Stages, Error> {
         let balance = scene.broads[self.broad].phase.balance_ms()?;
         let mut place = 0.0;

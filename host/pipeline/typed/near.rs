@@ -1,4 +1,5 @@
-//! Volumes that were not told of the separation lose pairs within it, and that is noticed: the padding is not for show.
+//! Volumes that ignore the separation lose pairs within it, and the test notices it: the growth is
+//! necessary.
 
 use super::*;
 use crate::device::emulator::{Emulator, Mode};
@@ -7,14 +8,15 @@ use crate::query::{Bv, Certified, CertifiedPrecision, Continuous, Refit};
 use crate::samples::soup;
 use crate::scene::Scene;
 
-/// How many pairs of random triangles certainly come within a tenth, with volumes that know of it or do not.
-fn certain(query: Query, told: bool) -> usize {
+/// Returns how many pairs of random triangles certainly come within a tenth; `grows` is whether
+/// volumes grow for it.
+fn certain(query: Query, grows: bool) -> usize {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
     let scene = Scene::from(soup(60, 5, true));
     let bodies = scene.bodies();
     let layout = Arc::new(Layout::new(bodies, query.kind()));
     let (mut pipeline, at) = one(&device, bodies, &layout, query);
-    if !told {
+    if !grows {
         pipeline.scene.broads[pipeline.queries[at].broad].phase.set_margin(0.0);
     }
     let (found, _) = pipeline.frame(at).expect("a frame");
@@ -29,7 +31,7 @@ fn volumes_without_the_separation_lose_pairs() {
     let query = Query::from(Continuous::by(certified));
     let all = certain(query.with_refit(Refit::Levels), true);
     for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
-        let counts = |told| Bv::ALL.map(|bv| certain(query.with_bv(bv).with_refit(refit), told));
+        let counts = |grows| Bv::ALL.map(|bv| certain(query.with_bv(bv).with_refit(refit), grows));
         assert_eq!(counts(true), [all; Bv::ALL.len()], "{refit:?}");
         assert!(counts(false).iter().all(|count| *count < all), "{refit:?}: {:?} of {all}", counts(false));
     }

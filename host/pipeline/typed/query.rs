@@ -1,4 +1,4 @@
-//! The memory of one query of a scene, and the way through its stages.
+//! The memory of one query of a scene, and its way through the stages.
 
 use super::scene::{SceneMemory, records};
 use super::{QueryParts, Step, frame};
@@ -18,48 +18,49 @@ use crate::stages::Stage;
 use nearmiss_kernels::abi::{BodyRecord, Span};
 use std::sync::Arc;
 
-/// Candidates a triangle for which there is room at first. Cloth at rest has 8, swept over a step 50; a list that
-/// turns out too short grows within the frame.
+/// Initial capacity, in candidates per triangle. Cloth at rest has 8, cloth swept over a step 50. A
+/// list that is too short grows within the frame.
 const PAIRS_A_TRIANGLE: usize = 16;
 /// The same for a query in motion.
 const SWEPT_PAIRS_A_TRIANGLE: usize = 64;
-/// Room that every list has at least: a scene of a few triangles may have all pairs.
+/// Least room of every list: a scene of a few triangles may have all pairs.
 const LEAST_ROOM: usize = 1 << 12;
 
-/// See above.
+/// The memory of one query.
 pub struct QueryMemory<R: Precision> {
     /// The query without its numbers: another query of this shape uses the same memory.
     pub shape: Query,
     pub query: Query,
     pub layout: Arc<Layout>,
     records: Buffer<BodyRecord>,
-    /// The place of its broad phase.
+    /// The index of its broad phase.
     pub broad: usize,
     pub counters: FrameCounters,
     pub narrow: Box<dyn Narrow<R>>,
     pub reruns: u64,
     /// Counters of the last frame.
     pub last: Counts,
-    /// Whether the lists were long enough for a whole frame: then the next one runs without waiting between steps.
+    /// Whether the lists were long enough for a whole frame: then the next one runs without waits
+    /// between steps.
     pub settled: bool,
     /// Launches of a settled frame, and the marks of every frame.
     pub replay: Replay,
-    /// Its part of the work.
+    /// Its share of the work.
     pub share: Share,
-    /// What is known of the answer's size.
+    /// Bounds of the answer's size.
     pub demand: Demand,
     /// Host time to launch this frame, in milliseconds.
     pub launch_ms: f64,
     pub wear: Wear,
-    /// The placing that the narrow phase has looked at.
+    /// The placing that the narrow phase last used.
     seen: Option<u64>,
 }
 
 impl<R: Precision> QueryMemory<R> {
-    /// Takes the memory that a share of the query's work needs beside that of the scene.
+    /// Allocates the query's own memory, for a share of its work.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new(scene: &mut SceneMemory<R>, parts: &QueryParts) -> Result<Self, Error> {
         let QueryParts { layout, query, share, .. } = parts;
         let device = scene.device.clone();
@@ -97,10 +98,10 @@ impl<R: Precision> QueryMemory<R> {
         })
     }
 
-    /// Takes the numbers of a query of the same shape. Nothing is built for them.
+    /// Sets the numbers of a query of the same shape; nothing is built.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn set(&mut self, scene: &SceneMemory<R>, parts: &QueryParts) -> Result<(), Error> {
         self.narrow.set(&scene.device, &parts.query, &parts.tolerances)?;
         if self.query != parts.query {
@@ -114,21 +115,21 @@ impl<R: Precision> QueryMemory<R> {
         Ok(())
     }
 
-    /// Whether it looks at t = 0 alone.
+    /// Returns whether it reads only t = 0.
     pub fn is_at_rest(&self) -> bool {
         self.query.kind().is_at_rest()
     }
 
-    /// What kernels know of the bodies.
+    /// Returns the records of the bodies for the kernels.
     pub fn records(&self) -> Span<BodyRecord> {
         self.records.span()
     }
 
-    /// Readies a frame: margins of the volumes, positions, and what follows from where bodies are. Whether tiles or trees must be
-    /// built for it.
+    /// Readies a frame: margins of the volumes, positions, and values that depend on positions.
+    /// Returns whether tiles or trees must be built for it.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn ready(&mut self, scene: &mut SceneMemory<R>, bodies: &[Body]) -> Result<bool, Error> {
         if self.seen != Some(scene.placings) {
             self.narrow.place(bodies);
@@ -141,15 +142,15 @@ impl<R: Precision> QueryMemory<R> {
         Ok(!broad.is_built)
     }
 
-    /// The places of the narrow phase's steps.
+    /// Returns the indices of the narrow phase's steps.
     pub fn narrow_steps_at(&self) -> std::ops::Range<usize> {
         0..self.narrow.steps().len()
     }
 
-    /// Runs a stage on what those before it left.
+    /// Runs a stage on the results of those before it.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn run(&mut self, scene: &mut SceneMemory<R>, stage: Stage) -> Result<(), Error> {
         match stage {
             Stage::Construct => scene.broadly(self, |broad, given, layout| broad.construct(given, layout)),
@@ -165,7 +166,8 @@ impl<R: Precision> QueryMemory<R> {
         }
     }
 
-    /// Tests a sample, if its answer bounds the whole. Nothing of it is counted: too little room would make the bound worse, and not wrong.
+    /// Tests a sample, if its answer bounds the whole. Its counts are discarded: too little room
+    /// gives a weaker bound, never a wrong one.
     fn sample(&mut self, scene: &mut SceneMemory<R>) -> Result<(), Error> {
         if self.narrow.bound().is_none() {
             return Ok(());
@@ -175,16 +177,16 @@ impl<R: Precision> QueryMemory<R> {
         self.counters.clear()
     }
 
-    /// All steps of the narrow phase, of a sample or of all.
+    /// Runs all steps of the narrow phase, on a sample or on all candidates.
     fn narrow(&mut self, scene: &mut SceneMemory<R>, is_sample: bool) -> Result<(), Error> {
         self.narrow_steps_at().try_for_each(|at| self.step(scene, Step::Narrow(at, is_sample)))
     }
 
-    /// Runs a step. Until the lists have settled it waits for the step's demand and, if a list was too short, grows
-    /// it and runs the step again: no step works on a part of its input.
+    /// Runs a step. Until the lists have settled it waits for the step's demand. If a list was too
+    /// short, it grows the list and runs the step again: no step works on a part of its input.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn step(&mut self, scene: &mut SceneMemory<R>, step: Step) -> Result<(), Error> {
         loop {
             match step {
@@ -216,7 +218,8 @@ impl<R: Precision> QueryMemory<R> {
         }
     }
 
-    /// Grows the lists that a step found too short, and sets back what it counted; whether there were any.
+    /// Grows the lists that a step found too short, and resets its counts. Returns whether there
+    /// were any.
     fn grow(&mut self, scene: &mut SceneMemory<R>, step: Step) -> Result<bool, Error> {
         let mut counters = self.counters.read()?;
         self.refuse(scene, step, &counters)?;
@@ -240,7 +243,7 @@ impl<R: Precision> QueryMemory<R> {
         }
         self.reruns += 1;
         if let Step::Sample | Step::Traverse = step {
-            // The first step: everything that was counted so far is its own.
+            // The first step: all counts so far are its own.
             self.counters.clear()?;
         } else {
             again.iter().for_each(|&at| counters[at] = 0);

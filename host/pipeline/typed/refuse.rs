@@ -1,4 +1,4 @@
-//! Lists that have too little room grow; frames whose answer has no room are refused by its count.
+//! Lists with too little room grow; frames whose answer has no room are refused by its count.
 
 use super::Step;
 use super::query::QueryMemory;
@@ -10,7 +10,7 @@ use crate::pipeline::precision::Precision;
 use nearmiss_kernels::abi::counter;
 
 impl<R: Precision> QueryMemory<R> {
-    /// Whether a list of any step had too little room.
+    /// Returns whether a list of any step had too little room.
     pub(super) fn has_overflowed(&mut self, scene: &mut SceneMemory<R>, counters: &Counts) -> bool {
         let mut steps = self.narrow_steps_at();
         let features = &mut scene.features;
@@ -21,10 +21,10 @@ impl<R: Precision> QueryMemory<R> {
             || self.narrow.ordered().is_some_and(|list| list.has_overflowed(counters))
     }
 
-    /// Refuses what a step has counted, before its lists grow.
+    /// Refuses a step's counted rows, before its lists grow.
     ///
     /// # Errors
-    /// [`Error::AnswerTooLarge`]; those of the device.
+    /// [`Error::AnswerTooLarge`]; device errors.
     pub(super) fn refuse(&self, scene: &SceneMemory<R>, step: Step, counters: &Counts) -> Result<(), Error> {
         match step {
             Step::Traverse => {

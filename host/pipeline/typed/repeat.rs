@@ -1,4 +1,4 @@
-//! One stage again and again, on what the last frame left: for profilers and for figures of one stage.
+//! Repeats one stage on the results of the last frame: for profilers and for timings of one stage.
 
 use super::query::QueryMemory;
 use super::scene::SceneMemory;
@@ -8,18 +8,20 @@ use crate::pipeline::counts::Counts;
 use crate::pipeline::precision::Precision;
 use crate::stages::Stage;
 
-/// Stages again, on what the last frame left.
+/// Repetition of stages on the results of the last frame.
 pub trait Again {
-    /// Milliseconds of each of `times` runs of a stage. What it reads must be there: volumes of the leaves for `Refit`,
-    /// a whole frame of the query, the last one, for `Traverse`, `Narrow` and `Order`. See [`crate::Detector::repeat_stage`].
+    /// Returns the milliseconds of each of `times` runs of a stage. Its input must exist: volumes
+    /// of the leaves for `Refit`; a whole frame of the query, the last one, for `Traverse`,
+    /// `Narrow` and `Order`. See [`crate::Detector::repeat_stage`].
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn repeat(&mut self, query: usize, stage: Stage, times: u32) -> Result<Vec<f64>, Error>;
-    /// The narrow stage once more, step by step: names and milliseconds. See [`crate::Detector::narrow_steps`].
+    /// Repeats the narrow stage, step by step; returns names and milliseconds. See
+    /// [`crate::Detector::narrow_steps`].
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn narrow_steps(&mut self, query: usize) -> Result<Vec<(&'static str, f64)>, Error>;
 }
 
@@ -53,7 +55,8 @@ impl<R: Precision> QueryMemory<R> {
         }
         let counters = self.counters_before(scene, stage);
         if stage == Stage::Traverse {
-            // A walk that goes on from the frame's own end may need other lists: they grow outside of the clock.
+            // A walk that continues from the frame's own end may need other lists: they grow before
+            // the timing.
             self.settled = false;
             self.counters.write(&counters)?;
             self.run(scene, stage)?;
@@ -71,7 +74,8 @@ impl<R: Precision> QueryMemory<R> {
         Ok(ms)
     }
 
-    /// The counters that a stage begins with: those of the last frame, without what the stage itself counted.
+    /// Returns the counters at the start of a stage: those of the last frame, without the stage's
+    /// own counts.
     fn counters_before(&mut self, scene: &mut SceneMemory<R>, stage: Stage) -> Counts {
         let mut counters = Counts::default();
         if matches!(stage, Stage::Narrow | Stage::Order) {

@@ -1,4 +1,5 @@
-//! The memory of a scene on a device, which all of its queries share: topology, positions, broad phases, candidates.
+//! The memory of a scene on a device, which all of its queries share: topology, positions, broad
+//! phases, candidates.
 
 use super::Broad;
 use super::query::QueryMemory;
@@ -15,17 +16,17 @@ use crate::query::{self, Bv, Order, Query};
 use crate::scene::Body;
 use nearmiss_kernels::abi::{BodyRecord, Pair, counter};
 
-/// The choices that two queries must share to share a broad phase.
+/// The choices that two queries must have in common to share a broad phase.
 #[derive(Clone, Copy, PartialEq)]
 pub enum BroadKey {
     /// Tiles: volume, order, and, in a scene with hubs, whether pairs round a hub are candidates.
     Tiles(Bv, Order, Option<bool>),
-    /// Trees, whose walks keep state: all of a query but its numbers.
+    /// Trees, whose walks keep state: all of a query except its numbers.
     Trees(Query),
 }
 
 impl BroadKey {
-    /// The key of a query of that shape.
+    /// Returns the key of a query of that shape.
     pub fn of(shape: &Query, layout: &Layout, is_gpu: bool) -> BroadKey {
         if shape.broad_on(is_gpu) == query::Broad::Tree {
             return BroadKey::Trees(*shape);
@@ -36,29 +37,30 @@ impl BroadKey {
     }
 }
 
-/// See above.
+/// The memory of a scene.
 pub struct SceneMemory<R: Precision> {
     pub device: Device,
     pub faces: Buffer<[u32; 3]>,
     pub vertices: Placing<R>,
-    /// Edges, what triangles own, and candidates of features; empty before the first query of them.
+    /// Edges, owned features, and candidates of features; empty before the first query of them.
     pub features: Features,
-    /// Candidate triangle pairs of the query that runs.
+    /// Candidate triangle pairs of the current query.
     pub pairs: List<Pair>,
     pub broads: Vec<Broad<R>>,
     /// Whether a submission is being enqueued.
     pub is_submitting: bool,
-    /// Around placings since the last frame.
+    /// Events before and after each placing since the last frame.
     pub placing: Vec<[Event; 2]>,
     /// Number of placings so far.
     pub placings: u64,
 }
 
 impl<R: Precision> SceneMemory<R> {
-    /// Uploads topology and positions; at both ends of the step if a query in motion will read them.
+    /// Uploads topology and positions; positions at both ends of the step if a query in motion will
+    /// read them.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new(device: Device, layout: &Layout, bodies: &[Body], has_ends: bool) -> Result<Self, Error> {
         Ok(SceneMemory {
             faces: device.of(purpose::FACES).upload(&layout.faces)?,
@@ -73,10 +75,11 @@ impl<R: Precision> SceneMemory<R> {
         })
     }
 
-    /// The place of the broad phase of a query, made if there is none like it. It is not built yet.
+    /// Returns the index of a query's broad phase, made if there is none like it. It is not built
+    /// yet.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn broad_of(&mut self, shape: &Query, query: &Query, layout: &Layout) -> Result<usize, Error> {
         let key = BroadKey::of(shape, layout, self.device.is_gpu());
         if let Some(at) = self.broads.iter().position(|broad| broad.key == key) {
@@ -87,10 +90,10 @@ impl<R: Precision> SceneMemory<R> {
         Ok(self.broads.len() - 1)
     }
 
-    /// Readies positions for a query at rest, or in motion.
+    /// Readies positions for a query at one time, or in motion.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn ready(&mut self, at_rest: bool) -> Result<(), Error> {
         if !self.vertices.is_ready(at_rest) {
             let start = self.device.event()?;
@@ -100,7 +103,7 @@ impl<R: Precision> SceneMemory<R> {
         Ok(())
     }
 
-    /// Hands the broad phase of a query what it works on.
+    /// Calls a function with the broad phase of a query and its context.
     pub fn broadly<T>(
         &mut self,
         query: &QueryMemory<R>,
@@ -117,7 +120,7 @@ impl<R: Precision> SceneMemory<R> {
     }
 }
 
-/// What kernels know of bodies; nothing if there is one alone.
+/// Returns the bodies' records for the kernels; empty if there is only one body.
 pub fn records(layout: &Layout) -> &[BodyRecord] {
     if layout.has_filters() { &layout.records } else { &[] }
 }

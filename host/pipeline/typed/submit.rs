@@ -1,5 +1,5 @@
-//! Queries that are submitted and not waited for: launches alone, that a stream which is being captured takes, and answers that
-//! stay on the device.
+//! Submitted queries: launches only, which a stream under capture can record. Their answers stay on
+//! the device.
 
 use super::TypedPipeline;
 use super::query::QueryMemory;
@@ -17,51 +17,54 @@ use crate::stages::{Stage, Stages};
 use nearmiss_kernels::abi::{Counter, FrameStatus, Room, Span, StatusArgs, seen};
 use nearmiss_kernels::entry::status_frame;
 
-/// Memory of a submission beside that of its queries.
+/// Memory of a submission, in addition to that of its queries.
 pub struct Submission {
     /// The queries, in the order in which they run.
     pub queries: Vec<Submitted>,
     replay: Replay,
-    /// Read if nothing of the caller's memory is placed.
+    /// Checks that are read if no memory of the caller is placed.
     unseen: Buffer<u64>,
 }
 
 /// A query that is submitted.
 pub struct Submitted {
-    /// Its place.
+    /// Its index.
     pub query: usize,
-    /// Every list that it fills.
+    /// The room of every list that it fills.
     pub rooms: Buffer<Room>,
-    /// Whether its answer is whole, and how long.
+    /// Status of its answer: whether it is whole, and its length.
     pub status: Buffer<FrameStatus>,
 }
 
-/// A pipeline that can be submitted to.
+/// A pipeline that takes submissions.
 pub trait Submits {
-    /// Takes the memory of a submission of queries that have each run a whole frame: from then on the lists do not grow until the
-    /// next [`Pipeline::frame`](super::Pipeline::frame).
+    /// Allocates a submission of queries that have each run a whole frame. From then on the lists
+    /// do not grow until the next [`Pipeline::frame`](super::Pipeline::frame).
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] if a walk needs the host, or positions of the host were placed last; those of the device.
+    /// [`Error::InvalidArgument`] if a walk needs the host, or if the last placing read host
+    /// memory; device errors.
     fn prepare(&mut self, queries: &[usize]) -> Result<(), Error>;
-    /// Whether it is prepared.
+    /// Returns whether it is prepared.
     fn is_prepared(&self) -> bool;
-    /// Submits the queries: positions are read again from where they lay.
+    /// Submits the queries: positions are read again from the same addresses.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] if it is not prepared; those of the device.
+    /// [`Error::InvalidArgument`] if it is not prepared; device errors.
     fn submit(&mut self) -> Result<(), Error>;
-    /// The answer of a query in the last submission; `None` if a list had too little room, or it is not prepared. Waits.
+    /// Returns the answer of a query in the last submission. `None` if a list had too little room,
+    /// or it is not prepared. Waits.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn collect(&mut self, query: usize) -> Result<Option<(Found<'_>, Stages)>, Error>;
-    /// Where the answer of a query lies; `None` if it is not submitted.
+    /// Returns the place of a query's answer; `None` if it is not submitted.
     fn answer(&self, query: usize) -> Option<DeviceAnswer>;
-    /// Poses that were found in memory of the caller, at both ends or at the only one, of each body; others are none.
+    /// Returns the poses that were read from the caller's memory, at both ends or at the only one,
+    /// of each body; default poses for the others.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn poses(&self) -> Result<Vec<Pose>, Error>;
 }
 
@@ -76,13 +79,13 @@ impl<R: Precision> Submits for TypedPipeline<R> {
         };
         for &query in queries {
             if let Err(why) = self.broad(query).without_host() {
-                return refused(why, "choose another traversal, or frames that wait");
+                return refused(why, "use another traversal, or do not submit");
             }
         }
         if !self.scene.vertices.is_repeatable() {
             return refused(
-                "a submission that reads positions of the host",
-                "give every body that moves by positions on the device",
+                "a submission cannot read positions of the host",
+                "give the positions of every moving body on the device",
             );
         }
         let device = self.scene.device.of(purpose::STATUS);
@@ -94,7 +97,7 @@ impl<R: Precision> Submits for TypedPipeline<R> {
         let mut unseen = device.buffer(seen::COUNT as usize)?;
         unseen.clear()?;
         self.submission = Some(Submission { queries: submitted, replay: Replay::default(), unseen });
-        // Once as it will be: the driver loads a kernel when it is first launched.
+        // Once as it will be: the driver loads a kernel at its first launch.
         self.submit()
     }
 
@@ -105,11 +108,11 @@ impl<R: Precision> Submits for TypedPipeline<R> {
     fn submit(&mut self) -> Result<(), Error> {
         let submission = self.submission.as_mut().map(|submission| std::mem::take(&mut submission.replay));
         let mut replay = submission.ok_or_else(|| Error::InvalidArgument {
-            what: "a submission that is not prepared".into(),
-            advice: "call `prepare` first, and again after every other call that changes the detector".into(),
+            what: "the submission is not prepared".into(),
+            advice: "call `prepare` first, and again after every call that changes the detector".into(),
         })?;
         let device = self.scene.device.clone();
-        // SAFETY: it launches and clears; what memory it holds it keeps.
+        // SAFETY: it launches and clears; it keeps the memory that it holds.
         let done = unsafe { replay.run(&device, |_| self.enqueue()) };
         self.submission.iter_mut().for_each(|submission| submission.replay = std::mem::take(&mut replay));
         done
@@ -154,7 +157,7 @@ impl<R: Precision> TypedPipeline<R> {
         self.submission.iter().flat_map(|submission| &submission.queries).find(|own| own.query == query)
     }
 
-    /// Launches the queries, behind the placing of what it places, and the status of each.
+    /// Launches the queries, after the placing, and the status of each.
     fn enqueue(&mut self) -> Result<(), Error> {
         let Some(submission) = &self.submission else { return Ok(()) };
         let scene = &mut self.scene;
@@ -176,7 +179,7 @@ impl<R: Precision> TypedPipeline<R> {
 }
 
 impl<R: Precision> QueryMemory<R> {
-    /// The room of every list that a frame fills.
+    /// Returns the room of every list that a frame fills.
     fn rooms(&mut self, scene: &mut SceneMemory<R>) -> Vec<Room> {
         let room =
             |list: &&mut dyn GrowableOutput| Room { entries: list.room(), counter: list.counter(), pad: 0 };

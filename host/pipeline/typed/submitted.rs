@@ -1,4 +1,4 @@
-//! What a submission tells of itself on the device, and the tests of that seen failing.
+//! The status of a submission on the device; faults are planted and must be noticed.
 
 use super::*;
 use crate::device::emulator::{Emulator, Mode};
@@ -6,7 +6,7 @@ use crate::pipeline::Layout;
 use crate::samples;
 use nearmiss_kernels::abi::{Room, counter};
 
-/// A prepared pipeline over a soup, whose list of pairs has too little room for a frame.
+/// Returns a prepared pipeline over a soup, whose list of pairs has too little room for a frame.
 fn prepared(device: &Device) -> TypedPipeline<f32> {
     let bodies = [samples::soup(300, 5, false)];
     let layout = Arc::new(Layout::new(&bodies, Query::discrete().kind()));
@@ -24,8 +24,8 @@ fn engine() -> Device {
     Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"))
 }
 
-/// How many lists a submission says were too short, and whether the host, asked the same, says so.
-fn told(pipeline: &mut TypedPipeline<f32>) -> (u64, bool) {
+/// Returns how many lists a submission reports as too short, and whether the host reports any.
+fn reported(pipeline: &mut TypedPipeline<f32>) -> (u64, bool) {
     pipeline.submit().expect("submitted");
     let status = pipeline.submission.as_ref().expect("prepared").queries[0].status.read(1).expect("read");
     (status[0].short, pipeline.collect(0).expect("counters").is_none())
@@ -33,10 +33,10 @@ fn told(pipeline: &mut TypedPipeline<f32>) -> (u64, bool) {
 
 #[test]
 fn a_list_without_room_is_told_on_the_device() {
-    assert_eq!(told(&mut prepared(&engine())), (1, true));
+    assert_eq!(reported(&mut prepared(&engine())), (1, true));
 }
 
-/// With a list's room told wrong, the device and the host disagree.
+/// If a list's room is wrong, device and host disagree.
 #[test]
 fn a_room_that_is_not_there_is_noticed() {
     let mut pipeline = prepared(&engine());
@@ -45,10 +45,10 @@ fn a_room_that_is_not_there_is_noticed() {
     let pairs = wrong.iter_mut().find(|room| room.counter == counter::PAIRS).expect("a list of pairs");
     *pairs = Room { entries: u64::MAX, ..*pairs };
     rooms.write(&wrong).expect("written");
-    assert_eq!(told(&mut pipeline), (0, true));
+    assert_eq!(reported(&mut pipeline), (0, true));
 }
 
-/// Whoever takes memory, reads, writes or marks the time in a submission is refused, and named.
+/// A submission that allocates, reads, writes or marks the time is refused, and the call is named.
 #[test]
 fn a_submission_that_does_more_than_launch_is_noticed() {
     let device = engine();

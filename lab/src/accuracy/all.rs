@@ -1,4 +1,4 @@
-//! Everything together: text, CSV files and pictures.
+//! All results together: text, CSV files and pictures.
 
 use super::funnel::FunnelRow;
 use super::headline::headline;
@@ -9,37 +9,37 @@ use crate::tables::{csv, text};
 use nearmiss::error::Error;
 use serde::Serialize;
 
-/// What was measured; what was not has no rows.
+/// Results of the measurements; those that were not made have no rows.
 #[derive(Debug, Serialize)]
 pub struct Trade {
     /// The machine.
     pub device: String,
-    /// A row a choice.
+    /// One row per choice.
     pub choices: Vec<Row>,
-    /// A row a choice and a point of a sweep.
+    /// One row per choice and point of a sweep.
     pub sweeps: Vec<Row>,
-    /// A row a step.
+    /// One row per step.
     pub funnel: Vec<FunnelRow>,
-    /// A row a frame.
+    /// One row per frame.
     pub refit: Vec<RefitRow>,
-    /// The summary of all.
+    /// Summary of all rows.
     pub headline: String,
 }
 
 impl Trade {
-    /// Nothing yet.
+    /// Returns empty results.
     pub fn new(device: String) -> Trade {
         let (choices, sweeps, funnel, refit, headline) = Default::default();
         Trade { device, choices, sweeps, funnel, refit, headline }
     }
 
-    /// Sums up: to be called when all is measured.
+    /// Writes the summary; call it after all measurements.
     pub fn sum_up(&mut self) {
         let all: Vec<Row> = self.choices.iter().chain(&self.sweeps).cloned().collect();
         self.headline = headline(&all);
     }
 
-    /// For people.
+    /// Returns the results as text, for a terminal.
     pub fn text(&self) -> String {
         let mut all = format!("on {}\n\n", self.device);
         all += &text(&self.choices);
@@ -53,10 +53,11 @@ impl Trade {
         all
     }
 
-    /// `trade.csv`, `trade-sweeps.csv` and so on, and a picture of each: names of files, and their bytes.
+    /// Returns `trade.csv`, `trade-sweeps.csv` and so on, and a picture of each: file names and
+    /// bytes.
     ///
     /// # Errors
-    /// Those of drawing.
+    /// Drawing errors.
     pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>, Error> {
         let mut files = Vec::new();
         let mut add = |name: &str, bytes: Vec<u8>| files.push((name.to_owned(), bytes));

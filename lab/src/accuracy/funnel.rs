@@ -1,4 +1,4 @@
-//! The funnel: how many pairs each step of a frame leaves to the next, and what it takes.
+//! The funnel: how many pairs each step of a frame leaves to the next, and its time.
 
 use crate::OneQuery;
 use crate::tables::{Printed, digits};
@@ -8,12 +8,12 @@ use nearmiss::mesh::Body;
 use nearmiss::query::Query;
 use serde::Serialize;
 
-/// A step.
+/// A step of a frame.
 #[derive(Clone, Debug, Serialize)]
 pub struct FunnelRow {
     /// The scene.
     pub input: String,
-    /// What the step leaves.
+    /// Name of the pairs that the step leaves.
     pub step: &'static str,
     /// Vertex/face pairs.
     pub vertex_face: Option<u64>,
@@ -25,10 +25,10 @@ pub struct FunnelRow {
     pub ms: Option<f64>,
 }
 
-/// One frame of the default continuous query, step by step.
+/// Returns the steps of one frame of the default continuous query.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn funnel(device: &Device, name: &str, body: &Body) -> Result<Vec<FunnelRow>, Error> {
     let mut detector = OneQuery::new(device.clone(), vec![body.clone()], Query::continuous())?;
     detector.detect()?;

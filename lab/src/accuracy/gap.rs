@@ -1,4 +1,4 @@
-//! How far two features are apart at a time: for false alarms, in floats, from differences.
+//! The distance of two features at a time: for false alarms, in floats, from differences.
 
 use crate::case::{Case, Features};
 
@@ -16,7 +16,8 @@ fn cross(a: V, b: V) -> V {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Distance of the features at `t`, as computed: it errs by some roundings of the features' extent.
+/// Returns the computed distance of the features at `t`. Its error is a few roundings of the
+/// features' extent.
 pub fn gap(case: &Case, t: f64) -> f64 {
     let origin = case.positions_t0[0];
     let at = |i: usize| -> V {
@@ -31,7 +32,7 @@ pub fn gap(case: &Case, t: f64) -> f64 {
     }
 }
 
-/// From a point to a segment.
+/// Returns the vector from a point to a segment.
 fn to_edge(p: V, [a, b]: [V; 2]) -> f64 {
     let (along, from) = (less(b, a), less(p, a));
     let length = dot(along, along);

@@ -1,10 +1,10 @@
-//! One line for those who read no more.
+//! The result in one line.
 
 use super::row::Row;
 use crate::tables::digits;
 use nearmiss::query::{Bv, Certified, QueryKind, Solver};
 
-/// Whether a row is of what is used when nothing is chosen, and asks the question that was meant.
+/// Returns whether a row is of the default choice, with the positions as given.
 fn is_default(row: &Row) -> bool {
     let motion = if row.tolerance_edges.is_some() { QueryKind::Continuous } else { QueryKind::Discrete };
     row.solver == Solver::default_for(motion)
@@ -13,12 +13,13 @@ fn is_default(row: &Row) -> bool {
         && row.precision != "f32 cast"
 }
 
-/// `0 missed, k late, x ppm undecided, y ms at tolerance = z edge lengths`, of all rows of the default choice: missed and late
-/// of all that they asked; undecided of the pairs, and milliseconds of a frame, of the largest moving scene.
+/// Returns `0 missed, k late, x ppm undecided, y ms at tolerance = z edge lengths` for the default
+/// choice. Missed and late count over all its rows. The undecided pairs and the milliseconds per
+/// frame are those of the largest moving scene.
 pub fn headline(rows: &[Row]) -> String {
     let of: Vec<&Row> = rows.iter().filter(|row| is_default(row)).collect();
     let sum = |count: fn(&Row) -> u64| of.iter().map(|row| count(row)).sum::<u64>();
-    let asked = format!("of {} pairs asked, {} of them contacts", sum(|r| r.cases), sum(|r| r.contacts));
+    let counts = format!("of {} pairs asked, {} of them contacts", sum(|r| r.cases), sum(|r| r.contacts));
     let moving = of.iter().filter(|row| row.ms.is_some() && row.tolerance_edges.is_some());
     let frame = match moving.max_by_key(|row| row.cases) {
         Some(row) => format!(
@@ -31,7 +32,7 @@ pub fn headline(rows: &[Row]) -> String {
         ),
         None => " (".to_owned() + Solver::default_for(QueryKind::Continuous).name(),
     };
-    format!("{} missed, {} late{frame}; {asked})", sum(|r| r.missed), sum(|r| r.late))
+    format!("{} missed, {} late{frame}; {counts})", sum(|r| r.missed), sum(|r| r.late))
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Questions with known answers, and ways to ask them.
+//! Test cases with known answers, and the choices to test them with.
 
 use super::judge::{Judge, Truth};
 use super::row::Row;
@@ -13,29 +13,29 @@ use rayon::prelude::*;
 
 /// Cases whose answers are known.
 pub struct Input {
-    /// What they are.
+    /// Name of the cases.
     pub name: String,
-    /// How the answers are known.
+    /// Source of the answers.
     pub reference: &'static str,
-    /// The questions.
+    /// The cases.
     pub cases: Vec<Case>,
     /// Their answers.
     pub truths: Vec<Truth>,
-    /// Their mean edge.
+    /// Their mean edge length.
     pub edge: f64,
 }
 
-/// One way to ask.
+/// A query and its tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
-    /// The question, with the test; its tolerance is given by each input.
+    /// The query, with its solver; each input sets the tolerance.
     pub asked: Query,
-    /// In mean edges; `None` where the solver takes none.
+    /// Tolerance in mean edges; `None` if the solver has none.
     pub tolerance: Option<f64>,
 }
 
 impl Choice {
-    /// Every solver of that kind of query, with every tolerance where it takes one.
+    /// Returns every solver of a kind of query, with every tolerance if it has one.
     pub fn every(kind: QueryKind, tolerances: &[f64]) -> Vec<Choice> {
         let of = |asked: Query| -> Vec<Choice> {
             match asked.certified() {
@@ -46,7 +46,7 @@ impl Choice {
         Query::every().filter(|query| query.kind() == kind).flat_map(of).collect()
     }
 
-    /// The query, of bodies or cases with such a mean edge.
+    /// Returns the query for bodies or cases with this mean edge.
     pub fn query(&self, edge: f64) -> Query {
         let mut query = self.asked;
         if let Some(certified) = query.certified_mut() {
@@ -64,11 +64,12 @@ impl std::fmt::Display for Choice {
 }
 
 impl Input {
-    /// Cases whose first times the oracle finds: exact rational arithmetic, about a millisecond a case. What else is known of
-    /// each, by when it has met if it meets, must not contradict it.
+    /// Finds the first contact of each case by the oracle: exact rational arithmetic, about a
+    /// millisecond a case. `meet` is the known upper bound of each first contact; the oracle must
+    /// not contradict it.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for a case that is not as it is said to be.
+    /// [`Error::InvalidArgument`] for a case whose known answer is wrong.
     pub fn new(name: &str, cases: Vec<Case>, meet: &[Option<f64>]) -> Result<Input, Error> {
         let truths: Vec<Truth> = cases.par_iter().map(truth).collect();
         let differs = |(truth, meet): (&Truth, &Option<f64>)| match (truth, meet) {
@@ -79,19 +80,19 @@ impl Input {
         if let Some(at) = truths.iter().zip(meet).position(differs) {
             return Err(Error::InvalidArgument {
                 what: format!(
-                    "{name}: query {} is said to meet: {:?}; exactly: {:?}",
+                    "{name}: query {} has the wrong answer, got {:?}, exactly {:?}",
                     at + 1,
                     meet[at],
                     truths[at]
                 ),
-                advice: "mend the column that says whether queries meet".into(),
+                advice: "correct the column with the answers".into(),
             });
         }
         let edge = mean_edge(&cases);
         Ok(Input { name: name.into(), reference: "exact", cases, truths, edge })
     }
 
-    /// The built-in generators'.
+    /// Returns the cases of the built-in generators.
     ///
     /// # Errors
     /// As for [`Input::new`]: a fault of the generator.
@@ -101,7 +102,8 @@ impl Input {
         Input::new(name, cases, &meet)
     }
 
-    /// The same questions with every coordinate put through `of`, which must not change the answers.
+    /// Returns the same cases with `of` applied to every coordinate, which must not change the
+    /// answers.
     pub fn with(&self, name: String, of: impl Fn(f64) -> f64 + Sync) -> Input {
         let moved = |points: &[[f64; 3]; 4]| points.map(|p| p.map(&of));
         let case = |case: &Case| Case {
@@ -114,10 +116,10 @@ impl Input {
         Input { name, reference: self.reference, cases, truths: self.truths.clone(), edge }
     }
 
-    /// Asks in one way; a row.
+    /// Tests one choice on the cases; returns its row.
     ///
     /// # Errors
-    /// Those of [`ask`].
+    /// Errors of [`ask`].
     pub fn row(&self, device: &Device, choice: Choice, stored: Stored, repeats: u32) -> Result<Row, Error> {
         let query = choice.query(self.edge);
         let answers = ask(device, &self.cases, &query, Options { filters: true, stored, repeats })?;
@@ -141,21 +143,21 @@ impl Input {
     }
 }
 
-/// What the oracle says.
+/// Returns the oracle's answer.
 pub fn truth(case: &Case) -> Truth {
     match first_contact(case) {
         None => Truth::Apart,
         Some(toi) => {
-            // A time is late if it is after the largest f64 that is not after the first contact, and a certificate is
-            // false if it ends before the smallest that is not before it.
+            // A time is late if it exceeds the largest f64 up to the first contact. A certificate
+            // is false if it ends before the smallest f64 from the first contact on.
             let (low, high) = toi.bracket();
             Truth::Meet { not_before: high, by: low }
         }
     }
 }
 
-/// Contacts and near misses of the built-in generator, of small, middling and wide integers: the second are the widest that
-/// f32 holds.
+/// Returns contacts and near misses of the built-in generator, of small, medium and wide integers.
+/// The medium ones are the widest that f32 holds.
 ///
 /// # Errors
 /// As for [`Input::new`].
@@ -167,10 +169,10 @@ pub fn built_in(n: usize, seed: u64) -> Result<Vec<Input>, Error> {
         .collect()
 }
 
-/// Query files, all vertex/face queries together and all edge/edge queries.
+/// Returns the cases of query files: all vertex/face queries together, and all edge/edge queries.
 ///
 /// # Errors
-/// Those of reading, and of [`Input::new`].
+/// Errors of reading, and of [`Input::new`].
 pub fn query_files(root: &std::path::Path) -> Result<Vec<Input>, Error> {
     let all = super::queries::queries(root)?;
     let mut inputs = Vec::new();

@@ -1,4 +1,5 @@
-//! Answers against the truth: what was missed, late or invented, and by how much the times are early.
+//! Judges answers against the truth: missed, late and invented contacts, and how early the times
+//! are.
 
 use super::gap::gap;
 use crate::case::{Case, Features};
@@ -6,31 +7,31 @@ use crate::pairs::{Outcome, mean_edge};
 use nearmiss::contacts::Status;
 use nearmiss::query::Solver;
 
-/// What is known of a case.
+/// Known answer of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Truth {
-    /// They never meet.
+    /// The features never meet.
     Apart,
-    /// They meet, first in `[not_before, by]`.
+    /// The features meet, first in `[not_before, by]`.
     Meet {
-        /// Not before.
+        /// Lower bound of the first contact.
         not_before: f64,
-        /// Not after.
+        /// Upper bound of the first contact.
         by: f64,
     },
-    /// Not known: no answer is wrong.
+    /// Unknown: no answer counts as wrong.
     Unknown,
 }
 
-/// How well a first time must be known for others to be called early by it, part of the step.
+/// Largest width of a known first time for which earliness is measured, as a fraction of the step.
 const KNOWN: f64 = 1e-6;
 
-/// What is judged, case by case.
+/// The judge, which takes answers case by case.
 pub struct Judge {
     solver: Solver,
-    /// The tolerance of a certified solver, a length.
+    /// Tolerance of a certified solver, a length.
     tolerance: f64,
-    /// For cases without an edge of a length.
+    /// Edge length for cases whose edges have length 0.
     usual_edge: f64,
     counts: Counts,
     times: Vec<f64>,
@@ -38,50 +39,52 @@ pub struct Judge {
     boxes: Vec<u32>,
 }
 
-/// How many of what.
+/// Counts of the judged answers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Counts {
-    /// Cases asked.
+    /// Number of cases.
     pub cases: u64,
-    /// Of them, those that meet.
+    /// Cases that meet.
     pub contacts: u64,
-    /// Of them, those of which it is not known.
+    /// Cases whose answer is unknown.
     pub unknown: u64,
     /// Contacts that were not listed.
     pub missed: u64,
-    /// Contacts with a time after the first; for solvers without proof, by more than their precision's share of a step.
+    /// Contacts with a late time. For solvers without a proof, the time must exceed the margin of
+    /// their precision.
     pub late: u64,
-    /// The most of the step that a time was late.
+    /// Largest lateness, as a fraction of the step.
     pub latest: f64,
-    /// Cases listed that never meet.
+    /// Listed cases that never meet.
     pub false_alarms: u64,
-    /// Of them, those as near as the certified solver's contract allows, or exhausted, which it allows too.
+    /// False alarms that the certified solver's contract allows: they are near enough, or out of
+    /// iterations.
     pub within_contract: u64,
-    /// Of them, those farther apart than the contract allows; 0 where the solver makes none.
+    /// False alarms farther apart than the contract allows; 0 if the solver makes none.
     pub violations: u64,
-    /// Of them, those called certain.
+    /// Certified cases that never meet, or with a wrong time.
     pub false_certificates: u64,
-    /// Cases listed as certain.
+    /// Cases listed as certified.
     pub certified: u64,
     /// Cases listed as undecided.
     pub undecided: u64,
-    /// Cases whose budget of boxes ended.
+    /// Cases whose iterations ran out.
     pub exhausted: u64,
 }
 
-/// Median, 99 percent, and most.
+/// Median, 99th percentile and maximum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Spread {
-    /// Half are not above.
+    /// Median.
     pub median: f64,
-    /// 99 of a hundred are not above.
+    /// 99th percentile.
     pub p99: f64,
-    /// None is above.
+    /// Maximum.
     pub most: f64,
 }
 
 impl Spread {
-    /// Of numbers in any order; zeros for none.
+    /// Returns the spread of numbers in any order; zeros if there are none.
     pub fn of(mut all: Vec<f64>) -> Spread {
         all.sort_unstable_by(f64::total_cmp);
         let at = |part: f64| {
@@ -92,28 +95,30 @@ impl Spread {
     }
 }
 
-/// What came out.
+/// The judge's results.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Judged {
-    /// How many of what.
+    /// The counts.
     pub counts: Counts,
-    /// How early the times of contacts are, in parts of the step; of those whose first time is known to a millionth.
+    /// Earliness of contact times, as fractions of the step; only contacts whose first time is
+    /// known to a millionth.
     pub early: Spread,
     /// The same as a distance at the features' greatest relative speed, in their mean edges.
     pub early_edges: Spread,
-    /// Boxes of the cases that were listed.
+    /// Boxes of the listed cases.
     pub boxes: Spread,
 }
 
 impl Judge {
-    /// A judge of a solver with a tolerance (a length; of no matter where it takes none), of cases with such a mean edge.
+    /// Returns a judge of a solver with a tolerance, for cases with this mean edge. The tolerance
+    /// is a length; it is unused if the solver has none.
     pub fn new(solver: Solver, tolerance: f64, usual_edge: f64) -> Judge {
         let (times, edges, boxes) = Default::default();
         Judge { solver, tolerance, usual_edge, counts: Counts::default(), times, edges, boxes }
     }
 
-    /// By how much a time may be after the truth before it counts as late: a solver with proof not at all; of the others,
-    /// what their precision makes of a root.
+    /// Returns the lateness that does not count: 0 for a solver with a proof. For the others it is
+    /// the error that their precision makes in a root.
     fn margin(&self) -> f64 {
         match self.solver {
             Solver::CubicF32 => 1e-3,
@@ -122,7 +127,7 @@ impl Judge {
         }
     }
 
-    /// One answer.
+    /// Judges one answer.
     pub fn note(&mut self, case: &Case, truth: Truth, met: Option<Outcome>) {
         self.counts.cases += 1;
         if let Some(met) = met {
@@ -145,7 +150,7 @@ impl Judge {
                 self.counts.late += late as u64;
                 self.counts.latest = self.counts.latest.max(met.toi - by);
                 if met.status == Status::Certified && met.toi_upper < not_before {
-                    // The first contact is later than a certificate claims.
+                    // The first contact is later than the certificate claims.
                     self.counts.false_certificates += 1;
                 }
                 if by - not_before > KNOWN {
@@ -172,8 +177,9 @@ impl Judge {
         }
     }
 
-    /// How far apart a certified solver may take features for contact: the bound of `kernels/src/prim/inclusion`, with the
-    /// roundings of the precision that answers last, and our own of the gap.
+    /// Returns the largest distance that a certified solver may call a contact: the bound of
+    /// `kernels/src/prim/inclusion`. It includes the roundings of the precision that answers last,
+    /// and our own of the gap.
     fn allowed(&self, case: &Case) -> f64 {
         let unit = if self.solver == Solver::CertifiedF32 {
             f64::from(f32::EPSILON) / 2.0
@@ -184,13 +190,13 @@ impl Judge {
         for p in case.positions_t0.iter().chain(&case.positions_t1) {
             (0..3).for_each(|k| most = most.max((p[k] - a[k]).abs()));
         }
-        // Differences between any two of the points are at most twice those from one.
+        // Differences of any two points are at most twice those from one point.
         let extent = 2.0 * most;
         let tolerance = self.tolerance.max(64.0 * unit * extent);
         3f64.sqrt() * (3.0 * tolerance + 40.0 * unit * extent) + 64.0 * f64::EPSILON * extent
     }
 
-    /// What came out.
+    /// Returns the results.
     pub fn judged(self) -> Judged {
         Judged {
             counts: self.counts,
@@ -201,7 +207,8 @@ impl Judge {
     }
 }
 
-/// The greatest difference of two points' displacements, one of either feature: no two points of them approach faster.
+/// Returns the greatest difference of two points' displacements, one of each feature: no two points
+/// approach faster.
 fn relative_speed(case: &Case) -> f64 {
     let split = if case.features == Features::VertexFace { 1 } else { 2 };
     let moved = |i: usize| [0, 1, 2].map(|k| case.positions_t1[i][k] - case.positions_t0[i][k]);

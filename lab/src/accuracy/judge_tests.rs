@@ -1,9 +1,11 @@
-//! The judge, shown to condemn: a planted miss, a late time, a false certificate, a breach of contract.
+//! Tests of the judge: it must report a planted miss, a late time, a false certificate, and a
+//! breach of contract.
 
 use super::*;
 use crate::case::Features;
 
-/// A vertex that falls through a face of sides 1, 1 and the root of 2, from a height of 1 to that much below; at 1/2.
+/// A vertex that falls through a face of sides 1, 1 and the root of 2. It starts at height 1 and
+/// ends at -`to`; at `to` = 1 it meets the face at 1/2.
 fn falling(to: f64) -> Case {
     let face = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let at = |z: f64| [[0.25, 0.25, z], face[0], face[1], face[2]];
@@ -30,7 +32,7 @@ fn a_right_answer_costs_nothing() {
     let Counts { missed, late, false_alarms, violations, false_certificates, .. } = right.counts;
     assert_eq!([missed, late, false_alarms, violations, false_certificates], [0; 5]);
     assert!((right.early.most - 1e-3).abs() < 1e-12);
-    // At a speed of 2, of a mean edge of (2 + sqrt 2) / 3.
+    // At a speed of 2, with a mean edge of (2 + sqrt 2) / 3.
     assert!((right.early_edges.median - 2e-3 * 3.0 / (2.0 + 2f64.sqrt())).abs() < 1e-12);
     assert_eq!(right.boxes.most, 5.0);
 }
@@ -63,7 +65,7 @@ fn a_false_certificate_is_counted() {
     let near = met(Status::Certified, 1.0, 1.0);
     let counts = judged(Solver::Certified, 1e-3, Truth::Apart, near).counts;
     assert_eq!((counts.false_alarms, counts.false_certificates, counts.violations), (1, 1, 0));
-    // Certain of a time before the first contact.
+    // Certified with a time before the first contact.
     let early = judged(Solver::Certified, -1.0, HALF, met(Status::Certified, 0.2, 0.3)).counts;
     assert_eq!((early.false_certificates, early.late), (1, 0));
 }

@@ -1,9 +1,9 @@
-//! What each faster choice costs, in misses, lateness and false alarms: what `nearmiss trade` measures, prints, writes and
-//! draws.
+//! The cost of each faster choice in misses, lateness and false alarms: the results of `nearmiss
+//! trade`.
 //!
-//! Every solver is asked at every tolerance: questions whose answers the exact oracle knows (a built-in generator of hard
-//! contacts, query files), and whole scenes, judged by the finest certified answers or by a list. Answers do not depend on
-//! the machine; times do.
+//! Every solver is tested at every tolerance. Single cases have answers of the exact oracle: a
+//! built-in generator of hard contacts, and query files. Whole scenes are judged by the finest
+//! certified answers or by a list. Answers do not depend on the machine; times do.
 
 mod all;
 mod funnel;

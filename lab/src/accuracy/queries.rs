@@ -6,18 +6,20 @@ use std::path::{Path, PathBuf};
 
 /// Queries of one folder, in the order of its files.
 pub struct Queries {
-    /// The folder, below the one that was given.
+    /// The folder, relative to the given one.
     pub name: String,
-    /// The questions.
+    /// The cases.
     pub cases: Vec<Case>,
-    /// Whether each meets, by the file.
+    /// Whether each meets, according to the file.
     pub meets: Vec<bool>,
 }
 
-/// Walks a folder: every `.csv` and `.csv.gz` in a folder called `vertex-face` or `edge-edge` is read, in order of names.
+/// Reads every `.csv` and `.csv.gz` in a folder called `vertex-face` or `edge-edge` below `root`,
+/// in order of names.
 ///
 /// # Errors
-/// [`Error::InvalidArgument`] for a folder without such a file; [`Error::Input`] for a row that cannot be used, with its line.
+/// [`Error::InvalidArgument`] for a folder without such a file; [`Error::Input`] for an invalid
+/// row, with its line.
 pub fn queries(root: &Path) -> Result<Vec<Queries>, Error> {
     let mut files = Vec::new();
     walk(root, &mut files)?;
@@ -40,7 +42,7 @@ pub fn queries(root: &Path) -> Result<Vec<Queries>, Error> {
         }
     }
     if all.is_empty() {
-        return Err(bad(root, "no folder vertex-face or edge-edge with a .csv or .csv.gz file below it"));
+        return Err(bad(root, "no .csv or .csv.gz file in a folder vertex-face or edge-edge below it"));
     }
     Ok(all)
 }
@@ -57,7 +59,7 @@ fn bad(folder: &Path, what: impl std::fmt::Display) -> Error {
 fn walk(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), Error> {
     for entry in std::fs::read_dir(folder).map_err(|e| bad(folder, e))? {
         let entry = entry.map_err(|e| bad(folder, e))?;
-        // A link to a folder is not followed: it may lead to where it lies.
+        // Links to folders are not followed: one may form a cycle.
         if entry.file_type().map_err(|e| bad(folder, e))?.is_dir() {
             walk(&entry.path(), files)?;
         } else {

@@ -1,5 +1,5 @@
-//! What refitting costs in quality: candidates of a tree that was built at the first frame and refitted since, against those
-//! of a tree built anew for each frame.
+//! The cost of refitting in quality: candidates of a tree built at the first frame and refitted
+//! since, compared with those of a tree rebuilt for each frame.
 
 use crate::OneQuery;
 use crate::tables::{Frames, Printed, digits};
@@ -17,31 +17,33 @@ pub struct RefitRow {
     pub bv: &'static str,
     /// Frames since the tree was built.
     pub frame: usize,
-    /// Triangle pairs that the refitted volumes let through.
+    /// Triangle pairs that pass the refitted volumes.
     pub refitted_pairs: u64,
-    /// Those of volumes built anew.
+    /// Triangle pairs that pass rebuilt volumes.
     pub fresh_pairs: u64,
     /// Overlap tests of the refitted tree.
     pub refitted_tests: u64,
-    /// Of the one built anew.
+    /// Overlap tests of the rebuilt tree.
     pub fresh_tests: u64,
     /// Milliseconds of refit, traversal and narrow stage with the refitted tree.
     pub refitted_ms: f64,
-    /// With the one built anew.
+    /// The same with the rebuilt tree.
     pub fresh_ms: f64,
-    /// Milliseconds of building it.
+    /// Milliseconds of the rebuild.
     pub build_ms: f64,
-    /// Milliseconds of traversal that all frames since the build have lost by not building anew: the fresh tree's time a test,
-    /// for the tests that the refitted one takes more. Tests do not waver as times do.
+    /// Milliseconds of traversal that all frames since the build have lost without a rebuild. It is
+    /// the refitted tree's additional tests, times the fresh tree's time per test. Test counts have
+    /// no noise; times do.
     pub lost_ms: f64,
-    /// Whether that is more than building costs: the best time to build anew.
+    /// Whether that exceeds the cost of a build: the best time to rebuild.
     pub rebuild: bool,
 }
 
-/// Asks every frame with the first one's tree and with its own. After a frame that says `rebuild` the count begins anew.
+/// Runs every frame with the first frame's tree and with its own. After a frame with `rebuild` the
+/// count restarts.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn refit(device: &Device, name: &str, frames: &Frames, bv: Bv) -> Result<Vec<RefitRow>, Error> {
     let bodies = frames.bodies(true)?;
     let query = Query::continuous().with_bv(bv);
@@ -52,7 +54,7 @@ pub fn refit(device: &Device, name: &str, frames: &Frames, bv: Bv) -> Result<Vec
         old.move_to(0, body.clone())?;
         fresh.move_to(0, body)?;
         fresh.rebuild()?;
-        // The first run of a frame grows its lists; the second counts.
+        // The first run of a frame grows its lists; the second is measured.
         old.detect()?;
         fresh.detect()?;
         let (a, b) = (old.detect()?, fresh.detect()?);
@@ -83,15 +85,15 @@ pub fn refit(device: &Device, name: &str, frames: &Frames, bv: Bv) -> Result<Vec
     Ok(rows)
 }
 
-/// What follows from the rows of one scene, in a sentence.
+/// Returns the conclusion from the rows of one scene, as a sentence.
 pub fn advice(rows: &[RefitRow]) -> String {
     let Some(last) = rows.last() else { return String::new() };
     let more = |row: &RefitRow| row.refitted_tests as f64 / row.fresh_tests.max(1) as f64;
     let most = rows.iter().map(more).fold(1.0, f64::max);
     let when = match rows.iter().find(|row| row.rebuild) {
-        Some(row) => format!("building anew pays after {} frames", row.frame + 1),
+        Some(row) => format!("a rebuild pays after {} frames", row.frame + 1),
         None => {
-            format!("building anew ({} ms) does not pay within {} frames", digits(last.build_ms), rows.len())
+            format!("a rebuild ({} ms) does not pay within {} frames", digits(last.build_ms), rows.len())
         }
     };
     format!(

@@ -1,81 +1,82 @@
-//! One row a choice.
+//! One row per choice.
 
 use super::judge::Judged;
 use crate::tables::{Printed, digits};
 use nearmiss::query::Solver;
 use serde::Serialize;
 
-/// What was asked, how, and what it cost. A column that a choice does not have is empty.
+/// A choice with its counts and costs. Columns that do not apply are empty.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Row {
-    /// What was asked.
+    /// Name of the input.
     pub input: String,
-    /// What its answers were judged by.
+    /// Source of the true answers.
     pub reference: &'static str,
-    /// The test.
+    /// The solver.
     pub solver: Solver,
-    /// Its tolerance in mean edges of the input.
+    /// Tolerance in mean edges of the input.
     pub tolerance_edges: Option<f64>,
     /// The same as a length.
     pub tolerance: Option<f64>,
-    /// How positions are stored.
+    /// Precision of stored positions.
     pub precision: &'static str,
-    /// The volume, of whole scenes.
+    /// Bounding volume, for whole scenes.
     pub bv: Option<&'static str>,
-    /// What a sweep drives: offset in edges, exponent of the scale, degree of degeneracy.
+    /// Parameter of a sweep: offset in edges, exponent of the scale, degree of degeneracy.
     pub at: Option<f64>,
-    /// Pairs of features asked (in whole scenes: what the volumes let through).
+    /// Pairs of features tested; in whole scenes, those that pass the volumes.
     pub cases: u64,
-    /// Of them, those that meet.
+    /// Pairs that meet.
     pub contacts: u64,
-    /// Of them, listed ones of which it is not known whether they meet.
+    /// Listed pairs whose answer is unknown.
     pub unknown: u64,
     /// Contacts that were not listed.
     pub missed: u64,
-    /// Contacts whose time is after the first.
+    /// Contacts with a late time.
     pub late: u64,
-    /// The most of the step by which one is.
+    /// Largest lateness, as a fraction of the step.
     pub latest: f64,
     /// Listed pairs that never meet.
     pub false_alarms: u64,
-    /// Of them, those as near as the contract of the solver allows; empty for solvers without one.
+    /// False alarms that the solver's contract allows; empty for solvers without one.
     pub within_contract: Option<u64>,
-    /// Of them, those farther apart.
+    /// False alarms farther apart than it allows.
     pub violations: Option<u64>,
-    /// Pairs called certain that are not so.
+    /// Certified pairs that never meet, or with a wrong time.
     pub false_certificates: u64,
     /// Pairs listed as undecided.
     pub undecided: u64,
-    /// Pairs whose budget of boxes ended.
+    /// Pairs whose iterations ran out.
     pub exhausted: u64,
     /// Pairs that f32 left to f64.
     pub escalated: u64,
-    /// How early times are, in parts of the step: half are not more.
+    /// Median earliness, as a fraction of the step.
     pub early_median: f64,
-    /// 99 of a hundred.
+    /// 99th percentile of it.
     pub early_p99: f64,
-    /// The most.
+    /// Maximum of it.
     pub early_max: f64,
-    /// The same as distances, in mean edges.
+    /// Median earliness as a distance, in mean edges.
     pub early_edges_median: f64,
-    /// 99 of a hundred.
+    /// 99th percentile of it.
     pub early_edges_p99: f64,
-    /// The most.
+    /// Maximum of it.
     pub early_edges_max: f64,
-    /// Boxes of the pairs that were listed: 99 of a hundred take no more.
+    /// Boxes of the listed pairs: 99th percentile.
     pub boxes_p99: f64,
-    /// The most.
+    /// Maximum of it.
     pub boxes_max: f64,
-    /// Nanoseconds a pair: single questions the filters and the solver, whole scenes the narrow stage.
+    /// Nanoseconds per pair: filters and solver for single cases, the narrow stage for whole
+    /// scenes.
     pub ns: Option<f64>,
-    /// Milliseconds a frame, of whole scenes.
+    /// Milliseconds per frame, for whole scenes.
     pub ms: Option<f64>,
-    /// Device memory, bytes.
+    /// Device memory in bytes.
     pub bytes: u64,
 }
 
 impl Row {
-    /// The counts and spreads of a judged choice.
+    /// Returns a row with the counts and spreads of a judged choice.
     pub fn judged(self, solver: Solver, judged: &Judged) -> Row {
         let Judged { counts, early, early_edges, boxes } = *judged;
         let contract = |count| solver.is_certified().then_some(count);
@@ -105,7 +106,7 @@ impl Row {
         }
     }
 
-    /// What tells this choice from the others of the same input.
+    /// Returns the text that distinguishes this choice from the others of the same input.
     pub fn choice(&self) -> String {
         let mut all = vec![self.solver.name().to_owned()];
         all.extend(self.tolerance_edges.map(|edges| format!("{edges:.0e}")));
@@ -116,7 +117,7 @@ impl Row {
         all.join(" ")
     }
 
-    /// Whether it gave an answer that is wrong in a way that nobody may rely on.
+    /// Returns whether an answer was wrong beyond the solver's contract.
     pub fn is_wrong(&self) -> bool {
         self.missed + self.late + self.false_certificates + self.violations.unwrap_or(0) > 0
     }

@@ -1,4 +1,5 @@
-//! Whole scenes: every choice asked of the same bodies, its contacts judged by the finest certified ones or by a list.
+//! Whole scenes: every choice runs on the same bodies. The finest certified contacts, or a list,
+//! judge it.
 
 use super::input::{Choice, truth};
 use super::judge::{Counts, Judge, Judged, Truth};
@@ -19,31 +20,32 @@ use rayon::prelude::*;
 pub struct Scene {
     /// Its name.
     pub name: String,
-    /// The body: in motion, or still for triangle pairs.
+    /// The body: in motion for contacts, still for triangle pairs.
     pub body: Body,
-    /// Mean side of its triangles.
+    /// Mean side length of its triangles.
     pub edge: f64,
     reference: &'static str,
     edges: Vec<[u32; 2]>,
-    /// Where the vertices are, at both ends of the step.
+    /// Positions of the vertices at both ends of the step.
     ends: [Vec<[f64; 3]>; 2],
-    /// What is known of each pair that may meet, ascending; all others are apart.
+    /// Known answer of each pair that may meet, ascending; all others are apart.
     truths: Vec<(Key, Truth)>,
     /// Triangle pairs that meet, ascending.
     pairs: Vec<[u32; 2]>,
 }
 
-/// The tolerance of the reference, in mean edges.
+/// Tolerance of the reference, in mean edges.
 const FINEST: f64 = 1e-9;
-/// Pairs that the reference leaves undecided, for the oracle to decide: some seconds of it.
+/// Most undecided pairs of the reference that the oracle decides: some seconds of work.
 const FEW: usize = 20_000;
 
 impl Scene {
-    /// Finds out what meets: by exact signs, or by the certified solver in f64 at 1e-9 of the mean edge, which proves an
-    /// interval of each first time; what it leaves undecided the oracle decides, unless a list tells, or it is too much.
+    /// Finds the true contacts. A discrete scene uses exact signs. A moving one uses the certified
+    /// solver in f64 at 1e-9 of the mean edge. It proves an interval of each first time. The oracle
+    /// decides the undecided pairs, if there is no list and there are at most `FEW`.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for a list of the other kind; those of the device.
+    /// [`Error::InvalidArgument`] for a list of the other kind; device errors.
     pub fn new(device: &Device, name: &str, body: Body, list: Option<List>) -> Result<Scene, Error> {
         let edge = mean_side(std::slice::from_ref(&body));
         let mut scene = Scene {
@@ -60,13 +62,13 @@ impl Scene {
             scene.pairs = match list {
                 Some(List::Triangles(pairs)) => pairs,
                 Some(List::Contacts(_)) => return Err(other_kind("one frame", "tri_a,tri_b")),
-                None => scene.asked(device, Query::discrete())?.triangles(),
+                None => scene.answer(device, Query::discrete())?.triangles(),
             };
             return Ok(scene);
         }
         scene.edges = Topology::new(scene.body.faces(), scene.body.vertex_count()).edges;
         let finest = Certified { tolerance: Some(FINEST * edge), ..Certified::by(CertifiedPrecision::F64) };
-        let found = scene.asked(device, Continuous::by(finest).into())?;
+        let found = scene.answer(device, Continuous::by(finest).into())?;
         let bounds = |c: &Contact| Truth::Meet { not_before: c.toi, by: c.toi_upper };
         let of = |c: &Contact| (c.kind, c.feature_a, c.feature_b);
         scene.truths = match list {
@@ -84,7 +86,7 @@ impl Scene {
                 let known = found.contacts();
                 let truth = |key: &Key| match known.binary_search_by_key(key, of) {
                     Ok(at) => bounds(&known[at]),
-                    // The reference misses it: only that it meets is known.
+                    // The reference misses it: the list only says that it meets.
                     Err(_) => Truth::Meet { not_before: 0.0, by: 1.0 },
                 };
                 keys.iter().map(|key| (*key, truth(key))).collect()
@@ -93,14 +95,14 @@ impl Scene {
         Ok(scene)
     }
 
-    fn asked(&self, device: &Device, query: Query) -> Result<Contacts, Error> {
+    fn answer(&self, device: &Device, query: Query) -> Result<Contacts, Error> {
         OneQuery::new(device.clone(), vec![self.body.clone()], query)?.detect()
     }
 
-    /// Asks the scene in one way, `repeats` times after one to warm up; a row.
+    /// Runs one choice on the scene, `repeats` times after a warm-up; returns its row.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn row(&self, device: &Device, choice: Choice, bv: Option<Bv>, repeats: u32) -> Result<Row, Error> {
         let query = choice.query(self.edge);
         let query = query.with_search(Search { bv, ..query.search() });
@@ -138,7 +140,7 @@ impl Scene {
         Ok(Row { cases: contacts.stats.candidates, ..row.judged(query.solver(), &judged) })
     }
 
-    /// The features of a pair.
+    /// Returns the features of a pair.
     fn case(&self, (kind, a, b): Key) -> Case {
         let (features, corners) = match kind {
             Kind::Ee => {
@@ -157,7 +159,8 @@ impl Scene {
         }
     }
 
-    /// Undecided contacts whose budget ended: a frame does not say, so they are asked again, each by itself.
+    /// Returns the undecided contacts whose iterations ran out. A frame does not report that, so
+    /// each is tested alone.
     fn exhausted(&self, device: &Device, query: &Query, found: &[Contact]) -> Result<Vec<Key>, Error> {
         let undecided = found.iter().filter(|c| c.status == Status::Undecided);
         let keys: Vec<Key> = undecided.map(|c| (c.kind, c.feature_a, c.feature_b)).collect();
@@ -167,7 +170,8 @@ impl Scene {
         Ok(keys.into_iter().zip(ended).filter(|(_, ended)| *ended).map(|(key, _)| key).collect())
     }
 
-    /// Contacts, ascending, against what is known, ascending; and those of them whose budget ended.
+    /// Judges contacts, ascending, by the known answers, ascending; `exhausted` has those whose
+    /// iterations ran out.
     fn judge(&self, solver: Solver, tolerance: f64, found: &[Contact], exhausted: &[Key]) -> Judged {
         let mut judge = Judge::new(solver, tolerance, self.edge);
         let mut known = self.truths.iter().peekable();
@@ -188,7 +192,7 @@ impl Scene {
         judge.judged()
     }
 
-    /// Triangle pairs, ascending.
+    /// Judges triangle pairs, ascending.
     fn judge_pairs(&self, found: &[[u32; 2]]) -> Judged {
         let without = |all: &[[u32; 2]], known: &[[u32; 2]]| {
             all.iter().filter(|pair| known.binary_search(pair).is_err()).count() as u64
@@ -205,7 +209,7 @@ impl Scene {
 
 fn other_kind(frames: &str, rows: &str) -> Error {
     Error::InvalidArgument {
-        what: format!("a list of the other kind, of {frames}"),
+        what: format!("the list of --truth has the wrong kind for a scene of {frames}"),
         advice: format!("give --truth a list of {rows}"),
     }
 }
@@ -216,14 +220,14 @@ mod tests {
     use crate::scene::soup;
     use nearmiss::device::emulator::{Emulator, Mode};
 
-    /// Contacts taken away, delayed and invented are counted, in the order of the lists.
+    /// Contacts that are removed, delayed and invented are counted, in the order of the lists.
     #[test]
     fn planted_faults_are_counted() {
         let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
         let body = soup(120, 4, true).expect("a scene");
         let scene = Scene::new(&device, "soup", body, None).expect("known");
         let choice = Choice { asked: Query::continuous(), tolerance: Some(1e-6) };
-        let found = scene.asked(&device, choice.query(scene.edge)).expect("an answer");
+        let found = scene.answer(&device, choice.query(scene.edge)).expect("an answer");
         let tolerance = 1e-6 * scene.edge;
         let of = |found: &[Contact]| scene.judge(Solver::Certified, tolerance, found, &[]).counts;
         let right = of(found.contacts());

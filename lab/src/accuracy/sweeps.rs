@@ -1,4 +1,4 @@
-//! Sweeps over what makes questions hard: distance from the origin, scale, degeneracy.
+//! Sweeps over three difficulties: distance from the origin, scale, degeneracy.
 
 use super::input::{Choice, Input};
 use super::row::Row;
@@ -9,27 +9,28 @@ use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::query::{Certified, QueryKind};
 
-/// How much to ask.
+/// Size of a sweep.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
-    /// Cases of a kind.
+    /// Number of cases of a kind.
     pub cases: usize,
-    /// Steps between two points of a sweep.
+    /// Steps from one point of the sweep to the next.
     pub step: u32,
-    /// Where random numbers begin.
+    /// Seed of the random numbers.
     pub seed: u64,
 }
 
-/// Every continuous solver at the default tolerance.
+/// Returns every continuous solver at the default tolerance.
 fn choices() -> Vec<Choice> {
     Choice::every(QueryKind::Continuous, &[Certified::TOLERANCE])
 }
 
-/// The built contacts of small integers at so many edges from the origin: in f64, which holds them exactly; and cast to
-/// f32, which asks another question, answered for the one that was meant.
+/// Tests the built contacts of small integers at several offsets from the origin, in edges. In f64
+/// the positions are exact. Cast to f32 they change the problem; the answers are judged by the
+/// original one.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn offsets(device: &Device, extent: Extent) -> Result<Vec<Row>, Error> {
     let input = Input::built("offset", built(extent.seed, extent.cases, 8))?;
     let mut rows = Vec::new();
@@ -40,7 +41,7 @@ pub fn offsets(device: &Device, extent: Extent) -> Result<Vec<Row>, Error> {
         for choice in choices() {
             let exact = moved.row(device, choice, Stored::F64, 0)?;
             rows.push(Row { at: Some(edges), ..exact });
-            // The tolerance that was asked for, though the edges have changed.
+            // The tolerance of the original, though the edges have changed.
             let cast = Input { edge: moved.edge, ..cast.with(cast.name.clone(), |x| x) };
             let other = cast.row(device, choice, Stored::F32, 0)?;
             rows.push(Row { at: Some(edges), precision: "f32 cast", ..other });
@@ -49,10 +50,10 @@ pub fn offsets(device: &Device, extent: Extent) -> Result<Vec<Row>, Error> {
     Ok(rows)
 }
 
-/// The built contacts of small integers times powers of two from 2^-100 to 2^100.
+/// Tests the built contacts of small integers times powers of two from 2^-100 to 2^100.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn scales(device: &Device, extent: Extent) -> Result<Vec<Row>, Error> {
     let input = Input::built("scale", built(extent.seed, extent.cases, 8))?;
     let mut rows = Vec::new();
@@ -66,10 +67,10 @@ pub fn scales(device: &Device, extent: Extent) -> Result<Vec<Row>, Error> {
     Ok(rows)
 }
 
-/// Each kind of degeneracy by degrees.
+/// Tests each kind of degeneracy by degrees.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn degeneracies(device: &Device, extent: Extent) -> Result<Vec<Row>, Error> {
     let mut rows = Vec::new();
     for kind in Degeneracy::ALL {

@@ -1,4 +1,4 @@
-//! Triangle pairs whose answers the oracle knows.
+//! Triangle pairs with the oracle's answers.
 
 use super::input::Choice;
 use super::judge::{Counts, Judged};
@@ -12,20 +12,21 @@ use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 use rayon::prelude::*;
 
-/// Points a side of the grids.
+/// Points per side of the grids.
 pub const SIDES: [u32; 3] = [3, 4, 8];
 
-/// `n` pairs of random triangles with corners on a grid.
+/// Returns `n` pairs of random triangles with corners on a grid.
 pub fn on_grid(r: &mut SmallRng, side: u32, n: usize) -> Vec<[Triangle; 2]> {
     let mut corner = || std::array::from_fn(|_| f64::from(r.random_range(0..side)));
     (0..n).map(|_| std::array::from_fn(|_| std::array::from_fn(|_| corner()))).collect()
 }
 
-/// Random triangles with corners on grids of 3, 4 and 8 points a side: most touch, lie in one plane or have no area. A row a
-/// discrete solver; `n` pairs a grid. Cost: about a millisecond a pair, in rationals.
+/// Tests random triangles with corners on grids of 3, 4 and 8 points a side: most touch, are
+/// coplanar or have no area. A row per discrete solver; `n` pairs per grid. Cost: about a
+/// millisecond a pair, in rationals.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn triangles(device: &Device, n: usize, seed: u64) -> Result<Vec<Row>, Error> {
     let mut r = SmallRng::seed_from_u64(seed);
     let mut rows = Vec::new();
@@ -33,7 +34,7 @@ pub fn triangles(device: &Device, n: usize, seed: u64) -> Result<Vec<Row>, Error
         let pairs = on_grid(&mut r, side, n);
         let truth: Vec<bool> = pairs.par_iter().map(|[p, q]| triangles_meet(p, q)).collect();
         for choice in Choice::every(QueryKind::Discrete, &[]) {
-            // The first time on a GPU loads the kernels.
+            // The first run on a GPU loads the kernels.
             ask_triangles(device, &pairs[..1.min(n)], &choice.asked, Stored::F64)?;
             let answers = ask_triangles(device, &pairs, &choice.asked, Stored::F64)?;
             let row = Row {

@@ -6,10 +6,10 @@ use nearmiss::error::Error;
 use nearmiss::mesh::Problem;
 use std::path::Path;
 
-/// A pair of features, as a contact names it.
+/// A pair of features, as in a contact.
 pub type Key = (Kind, u32, u32);
 
-/// What a file lists, ascending.
+/// The rows of a file, ascending.
 #[derive(Debug, PartialEq)]
 pub enum List {
     /// `kind,a,b`: all vertex/face and edge/edge pairs that meet during the step.
@@ -18,10 +18,10 @@ pub enum List {
     Triangles(Vec<[u32; 2]>),
 }
 
-/// Reads `kind,a,b` (`vf` or `ee`) or `tri_a,tri_b`, CSV or CSV.gz, with or without a head.
+/// Reads `kind,a,b` (`vf` or `ee`) or `tri_a,tri_b`, CSV or CSV.gz, with or without a header.
 ///
 /// # Errors
-/// [`Error::Input`] for a file that cannot be read or a row that is neither.
+/// [`Error::Input`] for a file that cannot be read, or a row of neither kind.
 pub fn list(file: &Path) -> Result<List, Error> {
     parse(&text(file)?).map_err(|what| Error::Input {
         file: file.display().to_string(),
@@ -33,8 +33,9 @@ fn parse(text: &str) -> Result<List, String> {
     let (mut contacts, mut triangles) = (Vec::new(), Vec::new());
     for (at, line) in text.lines().enumerate() {
         let fields: Vec<&str> = line.split(',').map(str::trim).collect();
-        let index =
-            |text: &str| text.parse::<u32>().map_err(|_| format!("row {}: {text} is no index", at + 1));
+        let index = |text: &str| {
+            text.parse::<u32>().map_err(|_| format!("row {}: index {text} is no whole number", at + 1))
+        };
         match fields[..] {
             [""] => {}
             [kind @ ("vf" | "ee"), a, b] => {
@@ -47,7 +48,7 @@ fn parse(text: &str) -> Result<List, String> {
         }
     }
     if !contacts.is_empty() && !triangles.is_empty() {
-        return Err("rows of both kinds".into());
+        return Err("rows have both kinds".into());
     }
     contacts.sort_unstable();
     triangles.sort_unstable();

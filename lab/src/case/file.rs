@@ -1,5 +1,6 @@
-//! Files of questions in the layout of the public Sample-Queries: eight rows a query, the four points at t = 0 and then at
-//! t = 1; a row has a numerator and a denominator of x, y and z, and whether the features meet.
+//! Files of cases in the layout of the public Sample-Queries. A query has eight rows: the four
+//! points at t = 0, then at t = 1. A row has numerator and denominator of x, y and z, and whether
+//! the features meet.
 
 use super::{Case, Features};
 use nearmiss::error::Error;
@@ -9,14 +10,16 @@ use num_rational::BigRational;
 use num_traits::{ToPrimitive, Zero};
 use std::path::Path;
 
-/// Rows a query.
+/// Rows per query.
 const ROWS: usize = 8;
-/// Most bytes of memory that a byte of a file takes: a row of six numbers of one digit has 14 and takes 24 as a point, and 32 as a line.
+/// Most bytes of memory per byte of a file. A row of six one-digit numbers has 14 bytes; it takes
+/// 24 as a point, and 32 as a line.
 const MULTIPLE: u64 = 8;
-/// Most digits of a numerator or a denominator: those of a double have up to 324, and dividing larger ones takes ever longer.
+/// Most digits of a numerator or a denominator. A double needs up to 324, and the division of
+/// larger ones is slow.
 const DIGITS: usize = 1000;
 
-/// What the folders above a file say it asks of.
+/// Returns the kind of features that the folders above a file name.
 pub fn features(path: &Path) -> Option<Features> {
     path.parent()?.iter().rev().find_map(|part| match part.to_str()? {
         "vertex-face" => Some(Features::VertexFace),
@@ -25,7 +28,7 @@ pub fn features(path: &Path) -> Option<Features> {
     })
 }
 
-/// A file's text, unpacked where it is packed.
+/// Returns a file's text, decompressed if needed.
 ///
 /// # Errors
 /// [`Error::Input`] for a file that cannot be read; [`Error::OutOfMemory`].
@@ -33,18 +36,18 @@ pub fn text(path: &Path) -> Result<String, Error> {
     nearmiss_io::file::text(path, MULTIPLE)
 }
 
-/// The questions of a file, each with the file's own answer.
+/// Returns the cases of a file, each with the file's own answer.
 ///
 /// # Errors
-/// [`Error::Input`] with the line and what is wrong with it; also for a number that f64 does not hold: rounding it would ask
-/// another question.
+/// [`Error::Input`] with the line and the fault. A number that f64 does not hold is a fault: its
+/// rounding would change the case.
 pub fn queries(path: &Path, features: Features) -> Result<Vec<(Case, bool)>, Error> {
     let text = text(path)?;
     let lines: Vec<_> = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()).collect();
     let wrong = |line: usize, token, why| input(path, Problem::QueryRow { line: line + 1, token, why });
     let (whole, rest) = lines.as_chunks::<ROWS>();
     if let Some((line, _)) = rest.last() {
-        return Err(wrong(*line, String::new(), "ends the file in the middle of a query, of eight rows"));
+        return Err(wrong(*line, String::new(), "ends the file in the middle of a query of eight rows"));
     }
     let query = |rows: &[(usize, &str); ROWS]| {
         let mut points = [[0.0; 3]; ROWS];
@@ -62,7 +65,7 @@ fn input(path: &Path, problem: Problem) -> Error {
     Error::Input { file: path.display().to_string(), problem }
 }
 
-/// A point and the truth, or the token that is wrong and why.
+/// Returns a point and the answer, or the wrong token and the reason.
 fn row(line: &str) -> Result<([f64; 3], bool), (String, &'static str)> {
     let cells: Vec<&str> = line.split(',').map(str::trim).collect();
     let [x, p, y, q, z, r, truth] = cells[..] else {
@@ -72,11 +75,11 @@ fn row(line: &str) -> Result<([f64; 3], bool), (String, &'static str)> {
     match truth {
         "0" => Ok((point, false)),
         "1" => Ok((point, true)),
-        other => Err((other.to_owned(), "is the truth, which is 0 or 1")),
+        other => Err((other.to_owned(), "is the answer, which must be 0 or 1")),
     }
 }
 
-/// A quotient that f64 holds.
+/// Returns a quotient, if f64 holds it.
 fn number(numerator: &str, denominator: &str) -> Result<f64, (String, &'static str)> {
     let whole = |cell: &str| {
         if cell.len() > DIGITS {
@@ -86,11 +89,11 @@ fn number(numerator: &str, denominator: &str) -> Result<f64, (String, &'static s
     };
     let (numerator, denominator) = (whole(numerator)?, whole(denominator)?);
     if denominator.is_zero() {
-        return Err((denominator.to_string(), "is a denominator, which is not zero"));
+        return Err((denominator.to_string(), "is a denominator, which must not be zero"));
     }
     let exact = BigRational::new(numerator, denominator);
     let double = exact.to_f64().filter(|x| BigRational::from_float(*x).as_ref() == Some(&exact));
-    double.ok_or_else(|| (exact.to_string(), "is no double, and rounding would ask another question"))
+    double.ok_or_else(|| (exact.to_string(), "is no double, and rounding would change the query"))
 }
 
 #[cfg(test)]
@@ -102,7 +105,7 @@ mod tests {
         assert_eq!(row("1,2, -3,4,0,1,1"), Ok(([0.5, -0.75, 0.0], true)));
         for (text, why) in [
             ("1,2,3,4,0,1", "7 columns"),
-            ("1,0,3,4,0,1,0", "not zero"),
+            ("1,0,3,4,0,1,0", "not be zero"),
             ("1,3,3,4,0,1,0", "no double"),
             ("1,2,3,4,0,1,2", "0 or 1"),
             ("x,2,3,4,0,1,1", "no integer"),

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// Where and when a file was measured.
+/// Machine and date of a file's measurement.
 #[derive(Clone, Debug, serde::Deserialize)]
 pub struct Origin {
     file: String,

@@ -30,7 +30,7 @@ struct Column {
     source: usize,
     /// A text of the row instead of a figure.
     text: Option<usize>,
-    /// What the figure is multiplied by.
+    /// Factor of the figure.
     #[serde(default = "one")]
     times: f64,
     /// Values of further columns that select the recorded row.
@@ -189,7 +189,7 @@ mod tests {
 
     #[test]
     fn numbers_have_three_digits() {
-        let told = [0.0587, 0.1384, 45.5, 79.96, 138.4, 1105.6, 162_543.0, 0.0, 7.49e-6].map(number);
-        assert_eq!(told, ["0.0587", "0.138", "45.5", "80", "138", "1,106", "162,543", "0", "7.49e-6"]);
+        let shown = [0.0587, 0.1384, 45.5, 79.96, 138.4, 1105.6, 162_543.0, 0.0, 7.49e-6].map(number);
+        assert_eq!(shown, ["0.0587", "0.138", "45.5", "80", "138", "1,106", "162,543", "0", "7.49e-6"]);
     }
 }

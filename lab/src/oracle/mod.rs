@@ -1,9 +1,9 @@
 //! Answers by exact rational arithmetic; imports nothing from the kernels.
 //!
-//! Two triangles ([`triangles_meet`]): the method shares nothing with theirs either, no determinant and no sign of one,
-//! but linear programming over the rationals. Slow (about a millisecond a question) and uniform: no input is a special
-//! case. Two features that move ([`first_contact`]): by the roots of polynomials, as algebraic numbers. Two that rest ([`near`]): by fractions
-//! of integers.
+//! Two triangles ([`triangles_meet`]): linear programming over the rationals. The method shares
+//! nothing with the kernels', not even a determinant or its sign. It is slow, about a millisecond a
+//! pair, and uniform: no input is a special case. Two moving features ([`first_contact`]): roots of
+//! polynomials, as algebraic numbers. Two features at one time ([`near`]): fractions of integers.
 
 mod motion;
 pub mod near;
@@ -15,10 +15,10 @@ use num_rational::BigRational;
 use num_traits::{One, Zero};
 use simplex::{Outcome, maximize};
 
-/// A triangle: its corners. Degenerate ones are the segments or points that they are.
+/// The corners of a triangle. A degenerate one is a segment or a point.
 pub type Triangle = [[f64; 3]; 3];
 
-/// The rational that a finite f64 is.
+/// Returns a finite f64 as a rational.
 ///
 /// # Panics
 /// For NaN and infinity, which no checked mesh holds.
@@ -26,18 +26,18 @@ pub fn exact(x: f64) -> BigRational {
     BigRational::from_float(x).expect("a finite number")
 }
 
-/// Whether the closed triangles share a point: whether there are weights `l, m >= 0`, each summing to one, with
-/// `sum l_i p_i = sum m_j q_j`.
+/// Returns whether the closed triangles share a point: whether there are weights `l, m >= 0`, each
+/// summing to one, with `sum l_i p_i = sum m_j q_j`.
 pub fn triangles_meet(p: &Triangle, q: &Triangle) -> bool {
     let (a, b) = common_point(p, q);
     maximize(&a, &b, &vec![BigRational::zero(); 6]) != Outcome::Infeasible
 }
 
-/// Whether the closed triangles share a point outside of the hull of `shared`: one point, or the two ends of a
-/// segment (which may coincide), all of them common corners.
+/// Returns whether the closed triangles share a point outside of the hull of `shared`. `shared` has
+/// common corners: one point, or the two ends of a segment (which may coincide).
 ///
-/// A point is outside of a segment if it is off its line, so that a direction across the line tells them apart, or on
-/// the line beyond an end. Each such direction is maximized over the common points.
+/// A point off the segment's line is separated from the segment by a direction across the line. A
+/// point on the line is beyond an end. Each such direction is maximized over the common points.
 ///
 /// # Panics
 /// If `shared` is empty.
@@ -53,7 +53,7 @@ pub fn triangles_meet_beyond(p: &Triangle, q: &Triangle, shared: &[[f64; 3]]) ->
         if v == w {
             n[k] = BigRational::one();
         } else {
-            // Across the line: d turned about axis k.
+            // Across the line: d rotated about axis k.
             n[(k + 1) % 3] = d[(k + 2) % 3].clone();
             n[(k + 2) % 3] = -d[(k + 1) % 3].clone();
         }
@@ -70,7 +70,8 @@ pub fn triangles_meet_beyond(p: &Triangle, q: &Triangle, shared: &[[f64; 3]]) ->
     })
 }
 
-/// The system `sum l_i p_i - sum m_j q_j = 0`, `sum l = 1`, `sum m = 1` in the weights `l, m`.
+/// Returns the system `sum l_i p_i - sum m_j q_j = 0`, `sum l = 1`, `sum m = 1` in the weights `l,
+/// m`.
 fn common_point(p: &Triangle, q: &Triangle) -> (Vec<Vec<BigRational>>, Vec<BigRational>) {
     let (one, zero) = (BigRational::one(), BigRational::zero());
     let mut rows = Vec::new();

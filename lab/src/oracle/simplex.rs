@@ -1,23 +1,23 @@
-//! Linear programs over the rationals: two phases, Bland's rule, so it ends on every input.
+//! Linear programs over the rationals: two phases and Bland's rule, so it ends on every input.
 
 use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
 
-/// What a linear program has to say.
+/// Outcome of a linear program.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
     /// No point satisfies the system.
     Infeasible,
-    /// The objective grows without end.
+    /// The objective is unbounded.
     Unbounded,
     /// The largest value of the objective.
     Most(BigRational),
 }
 
-/// The largest `c . x` over `x >= 0` with `a x = b`. Exact.
+/// Returns the largest `c . x` over `x >= 0` with `a x = b`. Exact.
 pub fn maximize(a: &[Vec<BigRational>], b: &[BigRational], c: &[BigRational]) -> Outcome {
     let (rows, columns) = (a.len(), c.len());
-    // One artificial variable a row makes a first basis; its own program drives them to zero.
+    // One artificial variable per row makes a first basis; its own program drives them to zero.
     let mut table: Vec<Vec<BigRational>> = Vec::new();
     for (i, (row, right)) in a.iter().zip(b).enumerate() {
         let mut r = row.clone();
@@ -37,7 +37,7 @@ pub fn maximize(a: &[Vec<BigRational>], b: &[BigRational], c: &[BigRational]) ->
     if !t.value().is_zero() {
         return Outcome::Infeasible;
     }
-    // Artificial variables left in the basis are zero: swap them out, or their row says nothing.
+    // Artificial variables left in the basis are zero: swap them out, or their row is redundant.
     for i in 0..rows {
         if t.basis[i] >= columns
             && let Some(j) = (0..columns).find(|&j| !t.table[i][j].is_zero())
@@ -51,7 +51,8 @@ pub fn maximize(a: &[Vec<BigRational>], b: &[BigRational], c: &[BigRational]) ->
     if t.climb(columns) { Outcome::Most(t.value()) } else { Outcome::Unbounded }
 }
 
-/// Rows in terms of the basis; the last column is the right side. `gain` is the reduced objective, same columns.
+/// Rows in terms of the basis; the last column is the right side. `gain` is the reduced objective,
+/// same columns.
 struct Tableau {
     basis: Vec<usize>,
     table: Vec<Vec<BigRational>>,
@@ -59,7 +60,7 @@ struct Tableau {
 }
 
 impl Tableau {
-    /// The reduced objective of `c` for the present basis.
+    /// Sets the reduced objective of `c` for the current basis.
     fn price(&mut self, c: &[BigRational]) {
         self.gain = c.to_vec();
         self.gain.push(BigRational::zero());
@@ -72,7 +73,7 @@ impl Tableau {
         self.gain.last().map_or_else(BigRational::zero, |x| -x)
     }
 
-    /// Pivots while a variable below `limit` gains. False if nothing bounds one.
+    /// Pivots while a variable below `limit` gains. Returns false if the objective is unbounded.
     fn climb(&mut self, limit: usize) -> bool {
         while let Some(j) = (0..limit).find(|&j| self.gain[j].is_positive()) {
             let ratio = |i: usize| self.table[i].last().map(|right| right / &self.table[i][j]);
@@ -101,7 +102,7 @@ impl Tableau {
     }
 }
 
-/// `to -= from * times`.
+/// Computes `to -= from * times`.
 fn subtract(to: &mut [BigRational], from: &[BigRational], times: &BigRational) {
     if times.is_zero() {
         return;

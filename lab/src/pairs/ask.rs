@@ -1,4 +1,4 @@
-//! Features in motion.
+//! Single pairs of features in motion.
 
 use super::lay::{AT_ONCE, check, mean_edge, topology, vertices};
 use super::{Answers, Options, Outcome, Stored};
@@ -13,21 +13,21 @@ use nearmiss::pipeline::precision::Precision;
 use nearmiss::query::{Certified, Continuous, ContinuousSolver, Query};
 use nearmiss_kernels::abi::{Hit, Output, Positions, Span, counter};
 
-/// Asks every case whether its features meet, and when first: by the query's solver, tolerance and budget, with the
-/// kernels of a frame. Without a tolerance, [`Certified::TOLERANCE`] of the cases' mean edge. Any number of cases; a million
-/// at a time, so that half a gigabyte of device memory is enough.
+/// Tests whether the features of every case meet, and when first. It uses the query's solver,
+/// tolerance and iterations, with the kernels of a frame. The default tolerance is
+/// [`Certified::TOLERANCE`] of the cases' mean edge. A million cases run at a time, so that half a
+/// gigabyte of device memory suffices.
 ///
 /// # Errors
-/// [`Error::Input`] for coordinates that are not finite or too large; [`Error::InvalidArgument`] for a query
-/// that is not of
-/// [`Query::Continuous`], and for coordinates that are to be stored in f32, which does not hold
-/// them; those of the device.
+/// [`Error::Input`] for coordinates that are not finite or too large. [`Error::InvalidArgument`]
+/// for a query other than [`Query::Continuous`], and for coordinates that f32 does not hold if they
+/// are stored in f32. Device errors.
 pub fn ask(device: &Device, cases: &[Case], query: &Query, how: Options) -> Result<Answers, Error> {
     query.check()?;
     let Query::Continuous(Continuous { mut solver, .. }) = *query else {
         return Err(Error::InvalidArgument {
-            what: format!("a {:?} query of single features", query.kind()),
-            advice: "ask continuous queries; of triangles that stand still, ask_triangles".into(),
+            what: format!("single features need a continuous query, got {}", query.kind().name()),
+            advice: "use a continuous query, or `ask_triangles` for triangles at one time".into(),
         });
     };
     check(cases, how.stored)?;
@@ -52,7 +52,7 @@ pub fn ask(device: &Device, cases: &[Case], query: &Query, how: Options) -> Resu
     Ok(all)
 }
 
-/// Asks as many as are asked at once.
+/// Tests one batch.
 fn some<R: Precision>(
     device: &Device,
     cases: &[Case],
@@ -105,16 +105,16 @@ struct Run<'a, R: Precision> {
     faces: Buffer<[u32; 3]>,
     layout: Layout,
     counters: FrameCounters,
-    /// What the counters are before a run.
+    /// The counters at the start of a run.
     counts: Counts,
-    /// Whether the filters are asked first.
+    /// Whether the filters run first.
     filters: bool,
     features: Features,
     narrow: ContinuousNarrow,
 }
 
 impl<R: Precision> Run<'_, R> {
-    /// Runs the filters, if asked for, and the solver; milliseconds of each.
+    /// Runs the filters, if enabled, and the solver. Returns the milliseconds of each.
     fn run(&mut self) -> Result<[f64; 2], Error> {
         self.counters.write(&self.counts)?;
         let given = NarrowContext {
@@ -137,7 +137,7 @@ impl<R: Precision> Run<'_, R> {
         Ok([start.to(&filtered)?, filtered.to(&end)?])
     }
 
-    /// The verdicts, where the cases are, and the counts.
+    /// Returns the verdicts in the cases' order, and the counts.
     fn answers(&self, cases: usize) -> Result<Answers, Error> {
         let counters = self.counters.read()?;
         let certified = self.solver.certified().is_some();
@@ -157,11 +157,11 @@ impl<R: Precision> Run<'_, R> {
             verdicts[vertex as usize / 4] = Some(met(&hit));
         }
         let of = |which| counters[which];
-        let asked = [of(counter::VF), of(counter::EE)];
+        let tested = [of(counter::VF), of(counter::EE)];
         let left = [of(counter::VF_SURVIVORS), of(counter::EE_SURVIVORS)];
         Ok(Answers {
             verdicts,
-            rejected: [0, 1].map(|kind| asked[kind].saturating_sub(left[kind])),
+            rejected: [0, 1].map(|kind| tested[kind].saturating_sub(left[kind])),
             escalated: [of(counter::VF_ESCALATED), of(counter::EE_ESCALATED)],
             ..Answers::default()
         })

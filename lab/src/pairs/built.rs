@@ -1,5 +1,6 @@
-//! Motions built in integers, so that the answer is known without a solver: contacts at a known time, of generic kinds and
-//! of those on which a cubic is known to err; and near misses, apart by one unit.
+//! Motions built in integers, so that the answer is known without a solver. There are contacts at a
+//! known time, of generic kinds and of kinds on which a cubic errs. There are near misses, one unit
+//! apart.
 
 use crate::case::{Case, Features};
 use rand::rngs::SmallRng;
@@ -7,12 +8,13 @@ use rand::{Rng, SeedableRng};
 
 /// A point in integers.
 pub type Point = [i64; 3];
-/// Four points at time 0 and 1; in twelfths, so that quarters and thirds are whole. A vertex, then a face; or two edges.
+/// Four points at time 0 and 1; in twelfths, so that quarters and thirds are whole. A vertex, then
+/// a face; or two edges.
 pub type Motion = [[Point; 4]; 2];
 
-/// The last three are classes on which cubics are known to err. A sliver is a face with one side short, or two edges
-/// almost parallel; a parallel motion keeps edges parallel, or the face its shape; a tangent one touches and turns
-/// back, or slides on: a double root.
+/// Names of the families. On the last three cubics are known to err. A sliver is a face with one
+/// short side, or two edges almost parallel. A parallel motion keeps edges parallel, or the face
+/// its shape. A tangent one touches and turns back, or slides on: a double root.
 pub const FAMILIES: [&str; 9] = [
     "generic",
     "in a plane",
@@ -25,27 +27,29 @@ pub const FAMILIES: [&str; 9] = [
     "tangent",
 ];
 
-/// The families, and any of them far from the origin, at thirty-two times the speed, and backwards in time.
+/// Number of kinds: the families, and any of them far from the origin, at thirty-two times the
+/// speed, and backwards in time.
 pub const KINDS: usize = FAMILIES.len() + 3;
 
-/// Up to this reach all coordinates are exact in f32.
+/// Largest reach at which all coordinates are exact in f32.
 pub const REACH_F32: i64 = 1 << 12;
-/// Up to this reach all coordinates are exact in f64.
+/// Largest reach at which all coordinates are exact in f64.
 pub const REACH_F64: i64 = 1 << 40;
 
-/// A motion whose answer is known.
+/// A motion with a known answer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Built {
     /// One of [`FAMILIES`], perhaps with `far`, `fast` or `backwards` before it; or `near miss`.
     pub name: String,
     /// The motion, exact.
     pub case: Case,
-    /// They have met by then; `None` where they never do.
+    /// A time by which they have met; `None` if they never do.
     pub toi: Option<f64>,
 }
 
-/// `n` contacts of every kind, vertex/face and edge/edge, and as many near misses as one kind has; of integers up to about 64
-/// times `reach`, or 2,000 times where they are fast. At most `REACH_F64 / 32`.
+/// Returns `n` contacts of every kind, vertex/face and edge/edge, and as many near misses as one
+/// kind has. Integers are up to about 64 times `reach`, or 2,000 times for fast ones. `reach` is at
+/// most `REACH_F64 / 32`.
 pub fn built(seed: u64, n: usize, reach: i64) -> Vec<Built> {
     let mut r = SmallRng::seed_from_u64(seed);
     let mut all = Vec::with_capacity(2 * n * (KINDS + 1));
@@ -63,13 +67,13 @@ pub fn built(seed: u64, n: usize, reach: i64) -> Vec<Built> {
     all
 }
 
-/// The question about a motion.
+/// Returns the case of a motion.
 pub fn case(motion: &Motion, features: Features) -> Case {
     let [positions_t0, positions_t1] = motion.map(|points| points.map(|p| p.map(|x| x as f64)));
     Case { features, positions_t0, positions_t1 }
 }
 
-/// The `i`th motion of a kind (below [`KINDS`]): it, by when it has met, and what it is.
+/// Returns the `i`th motion of a kind (below [`KINDS`]), a time by which it has met, and its name.
 pub fn of_kind(r: &mut SmallRng, kind: usize, face: bool, i: usize, reach: i64) -> (Motion, f64, String) {
     let time = [0, 16, 1, 8, 11][i % 5];
     let family = if kind < FAMILIES.len() { kind } else { i % FAMILIES.len() };
@@ -90,8 +94,8 @@ pub fn of_kind(r: &mut SmallRng, kind: usize, face: bool, i: usize, reach: i64) 
     }
 }
 
-/// Features on two sides of a plane for the whole step, one of them one unit or more away from it, then sheared by
-/// integers.
+/// Returns features on two sides of a plane for the whole step, then sheared by integers. One of
+/// them stays one unit or more from the plane.
 pub(super) fn near_miss(r: &mut SmallRng, face: bool, reach: i64) -> Motion {
     let on_one_side = if face { 1 } else { 2 };
     let height = |r: &mut SmallRng| [1, 2, 12, 12 * reach][r.random_range(0..4)];
@@ -110,7 +114,7 @@ pub(super) fn near_miss(r: &mut SmallRng, face: bool, reach: i64) -> Motion {
     plain
 }
 
-/// Coordinates of `dims` dimensions, whole multiples of 12 up to 12 `reach`.
+/// Returns coordinates of `dims` dimensions, whole multiples of 12 up to 12 `reach`.
 fn point(r: &mut SmallRng, dims: usize, reach: i64) -> Point {
     std::array::from_fn(|k| if k < dims { 12 * r.random_range(-reach..reach + 1) } else { 0 })
 }
@@ -127,7 +131,7 @@ fn less(a: Point, b: Point) -> Point {
     std::array::from_fn(|k| a[k] - b[k])
 }
 
-/// Points that meet at `sixteenths / 16`: vertex, then face; or two edges.
+/// Returns points that meet at `sixteenths / 16`: vertex, then face; or two edges.
 pub fn motion(r: &mut SmallRng, family: usize, face: bool, sixteenths: i64, reach: i64) -> Motion {
     let dims = [3, 2, 1, 3, 3, 3, 3, 3, 3][family];
     let mut then: [Point; 4] = std::array::from_fn(|_| point(r, dims, reach));
@@ -176,7 +180,8 @@ pub fn motion(r: &mut SmallRng, family: usize, face: bool, sixteenths: i64, reac
     [at(0), at(16)]
 }
 
-/// Makes the relative speed at the point of contact lie in the common plane: `along` times an edge, by a twelfth.
+/// Moves the relative speed at the point of contact into the common plane: `along` times an edge,
+/// by a twelfth.
 fn tangent(speed: &mut [Point; 4], then: &[Point; 4], face: bool, (u, v): (i64, i64), along: i64) {
     if face {
         let fine = speed.map(|p| p.map(|x| x * 12));

@@ -1,12 +1,12 @@
-//! Motions of one kind of degeneracy by degrees, in integers, so that the answer is known: half of them meet at t = 1/2, the
-//! others come as near as one unit.
+//! Motions with one kind of degeneracy in degrees, in integers, so that the answer is known. Half
+//! of them meet at t = 1/2; the others come as near as one unit.
 
 use super::built::{Built, Motion, Point, case};
 use crate::case::Features;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
-/// What is driven to its limit.
+/// Kind of degeneracy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Degeneracy {
@@ -14,15 +14,15 @@ pub enum Degeneracy {
     Angle,
     /// A vertex and a face 10^k times as long as wide.
     Aspect,
-    /// A vertex and a face, and displacements of 10^k edges.
+    /// A vertex and a face, with displacements of 10^k edges.
     Displacement,
 }
 
 impl Degeneracy {
-    /// Every kind.
+    /// All kinds.
     pub const ALL: [Degeneracy; 3] = [Degeneracy::Angle, Degeneracy::Aspect, Degeneracy::Displacement];
 
-    /// Its name.
+    /// Returns the kind's name.
     pub fn name(self) -> &'static str {
         match self {
             Degeneracy::Angle => "edge angle 10^-k",
@@ -35,12 +35,12 @@ impl Degeneracy {
 /// Largest degree: integers stay below 2^53.
 pub const MOST: u32 = 13;
 
-/// `n` motions of degree `k`, at most [`MOST`].
+/// Returns `n` motions of degree `k`, at most [`MOST`].
 ///
 /// # Panics
-/// For a larger `k`.
+/// If `k` is larger.
 pub fn degenerate(seed: u64, kind: Degeneracy, k: u32, n: usize) -> Vec<Built> {
-    assert!(k <= MOST, "a degree of at most {MOST}");
+    assert!(k <= MOST, "degree must be at most {MOST}, got {k}");
     let mut r = SmallRng::seed_from_u64(seed);
     let one = |i: usize| {
         let meets = i.is_multiple_of(2);
@@ -54,7 +54,7 @@ pub fn degenerate(seed: u64, kind: Degeneracy, k: u32, n: usize) -> Vec<Built> {
     (0..n).map(one).collect()
 }
 
-/// The first feature passes through the other from above, or stops one unit above it.
+/// Returns a first feature that passes through the other from above, or stops one unit above it.
 fn motion(r: &mut SmallRng, kind: Degeneracy, long: i64, meets: bool) -> (Motion, Features) {
     let short = r.random_range(1..4);
     let height = match kind {
@@ -64,20 +64,20 @@ fn motion(r: &mut SmallRng, kind: Degeneracy, long: i64, meets: bool) -> (Motion
     let slide = |r: &mut SmallRng| [r.random_range(-3..4), r.random_range(-3..4), 0];
     let (features, points): (Features, [Point; 4]) = match kind {
         Degeneracy::Angle => {
-            // They cross at the origin, each at another place of its own.
+            // They cross at the origin, at different places along each edge.
             let (p, q) = (r.random_range(1..4), r.random_range(1..4));
             let b = [[-4 * long * q, -short * q, 0], [4 * long * p, short * p, 0]];
             (Features::EdgeEdge, [[-3 * long * p, 0, 0], [5 * long * q, 0, 0], b[0], b[1]])
         }
         _ => {
-            // The vertex is above the origin, inside.
+            // The vertex is above the origin, inside the face.
             let long = if kind == Degeneracy::Aspect { 4 * long } else { 4 };
             let face = [[-long, -short, 0], [long, -short, 0], [short, 2 * short, 0]];
             (Features::VertexFace, [[0; 3], face[0], face[1], face[2]])
         }
     };
     let moving = if features == Features::VertexFace { 1 } else { 2 };
-    // Both features slide along their plane, together; their shape stays.
+    // Both features slide along their plane together; their shape stays.
     let by = slide(r);
     let end = |sign: i64| {
         let z = if sign < 0 || meets { -sign * height } else { 1 };

@@ -1,20 +1,22 @@
-//! Motions of known answers at the ends of the range of floats, where ordinary searches never come: built in integers, then
-//! stretched along each axis by a power of two of its own, which is exact and moves no time of contact.
+//! Motions with known answers at the ends of the range of floats, which random searches never
+//! reach. They are built in integers. Then each axis is scaled by its own power of two, which is
+//! exact and moves no time of contact.
 
 use super::built::{Built, KINDS, Motion, case, near_miss, of_kind};
 use crate::case::{Case, Features};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
-/// Where products of lengths overflow; lengths, places and speeds of many exponents in one pair; one axis huge and the
-/// others so small that their products with each other vanish; all of it a few of the smallest numbers.
+/// Names of the families. Huge: products of lengths overflow. Mixed-scale: lengths, places and
+/// speeds of many exponents in one pair. Axes-extreme: one axis is huge, and products of the other
+/// two underflow. Tiny: every coordinate is a few of the smallest numbers.
 pub const DIRECTED: [&str; 4] = ["huge", "mixed-scale", "axes-extreme", "tiny"];
 
 /// The ends of a precision, as exponents.
 struct Ends {
     /// The smallest number.
     least: i32,
-    /// What a mesh may hold.
+    /// The largest power of a mesh.
     most: i32,
     /// Digits.
     digits: i32,
@@ -25,18 +27,19 @@ struct Ends {
 const SINGLE: Ends = Ends { least: -149, most: 60, digits: 24, reach: 8 };
 const DOUBLE: Ends = Ends { least: -1074, most: 480, digits: 53, reach: 1 << 12 };
 
-/// `x 2^e`, of integers and within the range: exact. In two steps, as a power may be out of it.
+/// Returns `x 2^e`, for integers and within the range: exact. In two steps, as the power itself may
+/// be out of range.
 fn times(x: f64, e: i32) -> f64 {
     x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2)
 }
 
-/// `n` contacts of a family of [`DIRECTED`], vertex/face and edge/edge, of all kinds in turn, and `n` near misses; `single`:
-/// as f32 holds them.
+/// Returns `n` contacts of a family of [`DIRECTED`], vertex/face and edge/edge, of all kinds in
+/// turn, and `n` near misses. If `single`, f32 holds them.
 ///
 /// # Panics
-/// For a family that is none.
+/// If the family does not exist.
 pub fn directed(seed: u64, family: usize, single: bool, n: usize) -> Vec<Built> {
-    assert!(family < DIRECTED.len(), "no family {family}");
+    assert!(family < DIRECTED.len(), "family must be below {}, got {family}", DIRECTED.len());
     let mut r = SmallRng::seed_from_u64(seed);
     let ends = if single { SINGLE } else { DOUBLE };
     let mut all = Vec::with_capacity(2 * n);
@@ -60,20 +63,20 @@ pub fn directed(seed: u64, family: usize, single: bool, n: usize) -> Vec<Built> 
     all
 }
 
-/// Bits of the largest coordinate.
+/// Returns the bits of the largest coordinate.
 fn bits(motion: &Motion) -> i32 {
     let most = motion.iter().flatten().flatten().map(|x| x.unsigned_abs()).max().unwrap_or(0);
     (u64::BITS - most.leading_zeros()) as i32
 }
 
-/// A power of two for each axis, of integers of so many bits.
+/// Returns a power of two for each axis, for integers of so many bits.
 fn powers(r: &mut SmallRng, family: usize, bits: i32, ends: &Ends) -> [i32; 3] {
     let top = ends.most - bits;
     match family {
         0 => [top - r.random_range(0..ends.most / 6); 3],
         1 => [0; 3].map(|_| r.random_range(-ends.most / 2..=ends.most / 2)),
         2 => {
-            // Two factors whose product is near the smallest number: the third is huge beside it.
+            // Two factors whose product is near the smallest number; the third one is huge.
             let product = ends.least + r.random_range(0..8);
             let one = product / 2 - 5 + r.random_range(0..11);
             let mut by = [top - r.random_range(0..ends.most / 3), one, product - one];
@@ -84,7 +87,7 @@ fn powers(r: &mut SmallRng, family: usize, bits: i32, ends: &Ends) -> [i32; 3] {
     }
 }
 
-/// The same contact, but each point comes to it, and leaves, at a pace of its own.
+/// Returns the same contact, with its own speed for each point before and after it.
 fn hurried(r: &mut SmallRng, m: &Motion, toi: f64, ends: &Ends) -> Motion {
     let sixteenths = (toi * 16.0) as i64;
     let spare = ends.digits - 4 - bits(m);
@@ -103,7 +106,7 @@ mod tests {
     use super::*;
     use crate::oracle::meet_at;
 
-    /// Every number is what it was meant to be, and each contact is one.
+    /// Every number has the intended value, and each contact is one.
     #[test]
     fn directed_motions_are_as_they_say() {
         for (family, single) in (0..DIRECTED.len()).flat_map(|f| [(f, true), (f, false)]) {

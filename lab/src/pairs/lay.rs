@@ -11,11 +11,11 @@ use nearmiss_kernels::abi::{Pair, VertexMotion};
 use nearmiss_kernels::math::Vec3;
 use std::sync::Arc;
 
-/// Cases that are asked at once: half a gigabyte of device memory, and far from the end of 32 bits.
+/// Number of cases of one batch: half a gigabyte of device memory, and far below 32 bits.
 pub const AT_ONCE: usize = 1 << 20;
 
-/// Mean length of the edges of the features, at t = 0, of all cases together: three of a face, one of an edge. 0 where
-/// there are none.
+/// Returns the mean length of the features' edges at t = 0, over all cases: three of a face, one of
+/// an edge. It is 0 if there are none.
 pub fn mean_edge(cases: &[Case]) -> f64 {
     let (mut sum, mut count) = (0.0, 0u64);
     for case in cases {
@@ -25,7 +25,7 @@ pub fn mean_edge(cases: &[Case]) -> f64 {
         };
         for &[a, b] in edges {
             let [p, q] = [a, b].map(|i| case.positions_t0[i]);
-            // Scaled by the largest, so that squares of small or large numbers are neither lost nor infinite.
+            // Scaled by the largest, so that squares neither underflow nor overflow.
             let d = [0, 1, 2].map(|k| (p[k] - q[k]).abs());
             let most = d[0].max(d[1]).max(d[2]);
             if most > 0.0 {
@@ -38,7 +38,8 @@ pub fn mean_edge(cases: &[Case]) -> f64 {
     sum / count.max(1) as f64
 }
 
-/// Refuses coordinates that a mesh would not be let through with, and such as f32 does not hold where that is asked.
+/// Refuses coordinates that a mesh would refuse, and those that f32 does not hold if they are
+/// stored in f32.
 pub fn check(cases: &[Case], stored: Stored) -> Result<(), Error> {
     let most = if stored == Stored::F32 { f64::from(MAX_ABS_F32) } else { MAX_ABS_F64 };
     for (at, case) in cases.iter().enumerate() {
@@ -64,7 +65,8 @@ pub fn check(cases: &[Case], stored: Stored) -> Result<(), Error> {
     Ok(())
 }
 
-/// The pairs of the cases, vertex/face and edge/edge, each in the cases' order; and faces and edges for them.
+/// Returns the pairs of the cases, vertex/face and edge/edge, each in the cases' order; and the
+/// faces and edges for them.
 pub fn topology(cases: &[Case]) -> (Layout, [Vec<Pair>; 2]) {
     let (mut faces, mut edges) = (Vec::<[u32; 3]>::new(), Vec::<[u32; 2]>::new());
     let [mut vf, mut ee] = [Vec::new(), Vec::new()];
@@ -85,7 +87,7 @@ pub fn topology(cases: &[Case]) -> (Layout, [Vec<Pair>; 2]) {
     (Layout { faces: Arc::new(faces), features, ..Layout::default() }, [vf, ee])
 }
 
-/// The vertices of the cases, in motion.
+/// Uploads the vertices of the cases, in motion.
 pub fn vertices<R: Precision>(device: &Device, cases: &[Case]) -> Result<Buffer<VertexMotion<R>>, Error> {
     let at = |p: [f64; 3]| Vec3(p.map(R::of)).into();
     let moving = |case: &Case| [0, 1, 2, 3].map(|i| (case.positions_t0[i], case.positions_t1[i]));

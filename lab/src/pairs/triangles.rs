@@ -1,4 +1,4 @@
-//! Triangles that stand still.
+//! Single pairs of triangles at one time.
 
 use super::Stored;
 use super::lay::AT_ONCE;
@@ -13,24 +13,26 @@ use nearmiss::pipeline::precision::Precision;
 use nearmiss::query::{Discrete, Query, TriangleTest};
 use nearmiss_kernels::abi::{self, Pair, Point, Span, counter};
 
-/// The answers to a number of triangle pairs.
+/// Answers to a number of triangle pairs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriangleAnswers {
     /// Whether they share a point, in the pairs' order.
     pub meet: Vec<bool>,
-    /// How many entries the list of those that do had: as many, where each is appended once.
+    /// Number of entries in the list of meeting pairs: each pair must be appended once.
     pub listed: u64,
     /// Pairs that the float filter left to exact signs.
     pub uncertain: u64,
-    /// Milliseconds, on the device's own clock.
+    /// Milliseconds, by the device's clock.
     pub ms: f64,
 }
 
-/// Asks of every pair of triangles whether they share a point: by the query's solver, with the kernels of a frame.
+/// Tests whether the triangles of each pair share a point: by the query's solver, with the kernels
+/// of a frame.
 ///
 /// # Errors
-/// [`Error::InvalidArgument`] for a query that is not of [`Query::Discrete`], and for coordinates that are not exact in f32 where
-/// they are to be stored so; [`Error::Input`] for such as no mesh may have; those of the device.
+/// [`Error::InvalidArgument`] for a query other than [`Query::Discrete`], and for coordinates that
+/// f32 does not hold if they are stored in f32. [`Error::Input`] for coordinates that no mesh may
+/// have. Device errors.
 pub fn ask_triangles(
     device: &Device,
     pairs: &[[Triangle; 2]],
@@ -40,22 +42,22 @@ pub fn ask_triangles(
     query.check()?;
     let Query::Discrete(Discrete { test, .. }) = *query else {
         return Err(Error::InvalidArgument {
-            what: format!("a {:?} query of triangles that stand still", query.kind()),
-            advice: "ask a discrete query, or features in motion".into(),
+            what: format!("triangles at one time need a discrete query, got {}", query.kind().name()),
+            advice: "use a discrete query, or `ask` for features in motion".into(),
         });
     };
     let mut all = TriangleAnswers::default();
     for pairs in pairs.chunks(AT_ONCE) {
         let points: Vec<[f64; 3]> = pairs.iter().flatten().flatten().copied().collect();
         if stored == Stored::F32
-            // Numbers that no precision holds are refused as data by the mesh.
+            // The mesh refuses numbers that no precision holds.
             && let Some(x) = points
                 .iter()
                 .flatten()
                 .find(|x| x.abs() <= MAX_ABS_F64 && f64::from(**x as f32) != **x)
         {
             return Err(Error::InvalidArgument {
-                what: format!("a coordinate {x:e} that is not exact in f32"),
+                what: format!("a coordinate is not exact in f32, got {x:e}"),
                 advice: "store it in f64".into(),
             });
         }
@@ -77,7 +79,7 @@ pub fn ask_triangles(
     Ok(all)
 }
 
-/// Asks as many as are asked at once: triangles 2 i and 2 i + 1 are pair i.
+/// Tests one batch: triangles 2 i and 2 i + 1 are pair i.
 fn some<R: Precision>(device: &Device, mesh: &Mesh, test: TriangleTest) -> Result<TriangleAnswers, Error> {
     let count = mesh.faces().len() / 2;
     let points: Vec<Point<R>> = R::points(mesh.positions()).map(Point::from).collect();

@@ -1,4 +1,4 @@
-//! The catalogue's questions asked on a machine, by the kernels of a frame.
+//! Runs the catalogue's cases on a machine, by the kernels of a frame.
 
 use super::question::{Expect, Fault, Question};
 use super::report::Report;
@@ -10,17 +10,18 @@ use nearmiss::error::Error;
 use nearmiss::query::{Certified, CertifiedPrecision, Continuous};
 use nearmiss_kernels::prim::inclusion::Verdict;
 
-/// The solvers that must get all of them right.
+/// The solvers that must get every answer right.
 pub(super) const SOLVERS: [CertifiedPrecision; 3] = CertifiedPrecision::ALL;
 
-/// How they are asked: with the filters of a frame and without, from positions in f64 and, where f32 holds them, in f32.
+/// The options of the runs: with the filters of a frame and without, from positions in f64 and, if
+/// f32 holds them, in f32.
 const ALL_OPTIONS: [Options; 3] = [
     Options { filters: false, stored: Stored::F64, repeats: 0 },
     Options { filters: true, stored: Stored::F64, repeats: 0 },
     Options { filters: true, stored: Stored::F32, repeats: 0 },
 ];
 
-/// The kernels' words for an answer of a step that ends at `end`.
+/// Converts an answer into the kernels' verdict, for a step that ends at `end`.
 pub(super) fn verdict(met: Option<Outcome>, end: f64) -> Verdict {
     match met {
         None => Verdict::separated(end, 0),
@@ -31,12 +32,14 @@ pub(super) fn verdict(met: Option<Outcome>, end: f64) -> Verdict {
     }
 }
 
-/// Whether a query of a whole step answers the question too: what meets before an end meets first without one.
+/// Returns whether a query of a whole step also answers the case: a first contact before an end is
+/// also first without it.
 fn is_public(q: &Question) -> bool {
     q.end == 1.0 || matches!(q.expect, Expect::CollisionFilter(_) | Expect::Sure(_))
 }
 
-/// Answers to questions that may have a tolerance and a separation each; `None` where it cannot be asked so.
+/// Returns answers to cases, each with its own tolerance and separation; `None` if the case has no
+/// such run.
 pub(super) fn answers(
     device: &Device,
     questions: &[Question],
@@ -44,8 +47,8 @@ pub(super) fn answers(
     how: Options,
 ) -> Result<Vec<Option<Verdict>>, Error> {
     let mut all = vec![None; questions.len()];
-    let asked = |q: &Question| is_public(q) && (how.stored == Stored::F64 || q.case.fits_f32());
-    let mut left: Vec<usize> = (0..questions.len()).filter(|i| asked(&questions[*i])).collect();
+    let is_run = |q: &Question| is_public(q) && (how.stored == Stored::F64 || q.case.fits_f32());
+    let mut left: Vec<usize> = (0..questions.len()).filter(|i| is_run(&questions[*i])).collect();
     while let Some(first) = left.first() {
         let Question { tolerance, separation, .. } = questions[*first];
         let alike = |q: &Question| (q.tolerance, q.separation) == (tolerance, separation);
@@ -62,10 +65,10 @@ pub(super) fn answers(
     Ok(all)
 }
 
-/// Asks each question of every certified solver in every way and judges what is said.
+/// Runs each case with every certified solver and all options, and judges the answers.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn ask_questions(device: &Device, questions: &[Question]) -> Result<Report, Error> {
     let mut report = Report::new("questions");
     for (solver, how) in SOLVERS.into_iter().flat_map(|solver| ALL_OPTIONS.map(|how| (solver, how))) {
@@ -75,19 +78,19 @@ pub fn ask_questions(device: &Device, questions: &[Question]) -> Result<Report, 
             report.undecided += u64::from(!said.is_contact() && !said.is_separated());
             let fault = q.judge(said, solver == CertifiedPrecision::F32);
             report.note(fault, || {
-                format!("{} {}: {said:?}, not {:?}, by {solver:?}, {how:?}", q.id, q.what, q.expect)
+                format!("{} {}: got {said:?}, expected {:?}, by {solver:?}, {how:?}", q.id, q.what, q.expect)
             });
         }
     }
     Ok(report)
 }
 
-/// A change of a question, and what must be as before.
+/// A change of a case, and which part of the answer must stay.
 struct Turn {
     name: &'static str,
-    /// `None` where it is not exact for these numbers.
+    /// `None` if it is not exact for these numbers.
     change: fn(&Question) -> Option<Question>,
-    /// Whether every bit of the answer must stay; else the judge's verdict must.
+    /// Whether every bit of the answer must stay; otherwise only the judge's verdict must.
     bits: bool,
 }
 
@@ -106,12 +109,13 @@ const TURNS: [Turn; 12] = [
     Turn { name: "features exchanged", change: |q| order(q, [0, 3, 2, 1], [2, 3, 0, 1]), bits: false },
 ];
 
-/// With every coordinate changed, and back to the bit where the change has an inverse by the sign of zero.
+/// Changes every coordinate. It changes them back bit by bit, if the change has an inverse by the
+/// sign of zero.
 fn points(q: &Question, f: fn(f64) -> f64) -> Option<Question> {
     let all = |p: [[f64; 3]; 4]| p.map(|p| p.map(f));
     let case =
         Case { positions_t0: all(q.case.positions_t0), positions_t1: all(q.case.positions_t1), ..q.case };
-    // Differences are what counts: a shift must keep them all.
+    // Only differences matter: a shift must keep all of them.
     let exact = |a: &[[f64; 3]; 4], b: &[[f64; 3]; 4]| {
         a.as_flattened().iter().zip(b.as_flattened()).all(|(x, y)| {
             let shift = f(0.0);
@@ -123,7 +127,7 @@ fn points(q: &Question, f: fn(f64) -> f64) -> Option<Question> {
     kept.then_some(Question { case, ..*q })
 }
 
-/// Times a power of two, where neither end of the range is met.
+/// Scales by a power of two, unless a number would leave the range.
 fn scaled(q: &Question, power: i32) -> Option<Question> {
     let by = 2f64.powi(power);
     let all = |p: [[f64; 3]; 4]| p.map(|p| p.map(|x| x * by));
@@ -142,7 +146,7 @@ fn axes(q: &Question, f: fn([f64; 3]) -> [f64; 3]) -> Option<Question> {
     Some(Question { case, ..*q })
 }
 
-/// Points in another order, by the kind of features.
+/// Reorders the points, by the kind of features.
 fn order(q: &Question, face: [usize; 4], edges: [usize; 4]) -> Option<Question> {
     let order = if q.case.features == Features::VertexFace { face } else { edges };
     let all = |p: [[f64; 3]; 4]| order.map(|i| p[i]);
@@ -151,11 +155,11 @@ fn order(q: &Question, face: [usize; 4], edges: [usize; 4]) -> Option<Question> 
     Some(Question { case, ..*q })
 }
 
-/// Asks each question again in other units, places, axes and orders; and backwards in time, where what meets still does
-/// and what does not still does not.
+/// Runs each case again in other units, places, axes and orders. It also runs them backwards in
+/// time: whether the features meet must not change.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn ask_turned_questions(device: &Device, questions: &[Question]) -> Result<Report, Error> {
     let mut report = Report::new("questions turned");
     for solver in SOLVERS {
@@ -163,11 +167,11 @@ pub fn ask_turned_questions(device: &Device, questions: &[Question]) -> Result<R
         let narrow = solver == CertifiedPrecision::F32;
         for turn in &TURNS {
             let turned: Vec<Option<Question>> = questions.iter().map(turn.change).collect();
-            let asked: Vec<Question> = turned.iter().flatten().copied().collect();
-            let mut said = answers(device, &asked, solver, Options::default())?.into_iter();
+            let changed: Vec<Question> = turned.iter().flatten().copied().collect();
+            let mut said = answers(device, &changed, solver, Options::default())?.into_iter();
             for ((q, was), turned) in questions.iter().zip(&plain).zip(&turned) {
                 let (Some(turned), Some(was)) = (turned, was) else {
-                    // Asked in no way before, or not exact now: its answer, if any, is passed over.
+                    // It had no run before, or is not exact now: its answer, if any, is skipped.
                     if turned.is_some() {
                         said.next();
                     }
@@ -176,7 +180,7 @@ pub fn ask_turned_questions(device: &Device, questions: &[Question]) -> Result<R
                 let Some(is) = said.next().flatten() else { continue };
                 let fault = match turn.bits {
                     true => (is != *was).then_some(Fault::Unexpected),
-                    // Another order may leave without a certificate what had one.
+                    // In another order, a certified answer may become uncertified.
                     false => match turned.expect {
                         Expect::Sure(t) => {
                             Question { expect: Expect::CollisionFilter(t), ..*turned }.judge(&is, narrow)
@@ -185,7 +189,7 @@ pub fn ask_turned_questions(device: &Device, questions: &[Question]) -> Result<R
                     },
                 };
                 report.note(fault, || {
-                    format!("{} {}, {}: {is:?}, not {was:?}, by {solver:?}", q.id, q.what, turn.name)
+                    format!("{} {}, {}: got {is:?}, expected {was:?}, by {solver:?}", q.id, q.what, turn.name)
                 });
             }
         }
@@ -193,7 +197,7 @@ pub fn ask_turned_questions(device: &Device, questions: &[Question]) -> Result<R
             let [positions_t0, positions_t1] = [q.case.positions_t1, q.case.positions_t0];
             Question { case: Case { positions_t0, positions_t1, ..q.case }, ..*q }
         };
-        // An end within the step is a beginning backwards.
+        // An end within the step would be a start when played backwards.
         let whole: Vec<Question> = questions.iter().filter(|q| q.end == 1.0).copied().collect();
         let backwards: Vec<Question> = whole.iter().map(back).collect();
         let said = answers(device, &backwards, solver, Options::default())?;
@@ -202,7 +206,7 @@ pub fn ask_turned_questions(device: &Device, questions: &[Question]) -> Result<R
                 Expect::CollisionFilter(_) | Expect::Sure(_) => is.is_separated().then_some(Fault::Missed),
                 Expect::Apart | Expect::Near => is.is_contact().then_some(Fault::FalseCertificate),
             };
-            report.note(fault, || format!("{} {}, backwards: {is:?}, by {solver:?}", q.id, q.what));
+            report.note(fault, || format!("{} {}, backwards: got {is:?}, by {solver:?}", q.id, q.what));
         }
     }
     Ok(report)

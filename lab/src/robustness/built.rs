@@ -1,4 +1,4 @@
-//! Contacts built in integers, as many as one likes, asked on a machine.
+//! Runs contacts that are built in integers, any number of them, on a machine.
 
 use super::ask::{SOLVERS, verdict};
 use super::question::Fault;
@@ -14,17 +14,17 @@ use nearmiss::query::{Certified, Continuous};
 
 /// Sizes of the integers: small; all exact in f32; all exact in f64.
 const REACHES: [i64; 3] = [8, REACH_F32, REACH_F64 / 32];
-/// Tolerances, in parts of the reach.
+/// Tolerances, as fractions of the reach.
 const TOLERANCES: [f64; 4] = [1e-6, 1e-3, 1e-9, 0.0];
 /// Cases of one feature and family that are made at once: with all families 200 MB of host memory.
 const AT_ONCE: usize = 4_096;
 
-/// What is wrong with the answer to a motion whose answer is known.
+/// Returns the fault of an answer to a motion with a known answer.
 fn judge(motion: &Built, met: Option<Outcome>) -> Option<Fault> {
     let said = verdict(met, 1.0);
     match motion.toi {
         Some(_) if said.is_separated() => Some(Fault::Missed),
-        // They may have met before: late is certain, early is not.
+        // They may have met before: a late answer is certainly wrong, an early one is not.
         Some(t) if said.toi > t => Some(Fault::Late),
         _ if said.toi > said.toi_upper => Some(Fault::FalseCertificate),
         None if said.is_contact() => Some(Fault::FalseCertificate),
@@ -32,19 +32,19 @@ fn judge(motion: &Built, met: Option<Outcome>) -> Option<Fault> {
     }
 }
 
-/// Asks `n` contacts of every family, half vertex/face and half edge/edge, of integers of three sizes, of every certified
-/// solver, and as many near misses; and `n` of each of the directed families. `heard` may change what was said, for
-/// showing that faults are found.
+/// Runs `n` contacts of every family, half vertex/face and half edge/edge, and as many near misses.
+/// Integers have three sizes; every certified solver runs. Then it runs `n` contacts of each
+/// directed family. `heard` may change the answers, for tests that plant faults.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn ask_built(
     device: &Device,
     n: usize,
     heard: impl Fn(Option<Outcome>) -> Option<Outcome>,
 ) -> Result<Report, Error> {
     let mut report = Report::new("built contacts");
-    // Of each feature and reach.
+    // For each feature and reach.
     let each = n.div_ceil(2 * REACHES.len());
     let chunk = each.div_ceil(TOLERANCES.len()).min(AT_ONCE);
     for (of, reach) in (0u64..).zip(REACHES) {
@@ -57,7 +57,8 @@ pub fn ask_built(
             note(&mut report, device, &motions, ("X60", tolerance * reach as f64), how, &heard)?;
         }
     }
-    // Of each precision, with the filters of a frame and without; a tolerance would be large or small for any of them.
+    // For each precision, with the filters of a frame and without. The tolerance is 0: any other
+    // would be large or small for some of them.
     for (family, id) in ["X61", "X62", "X63", "X64"].into_iter().enumerate() {
         for (at, (single, filters)) in
             (0..n.div_ceil(8)).step_by(AT_ONCE).flat_map(|at| ALL_OPTIONS.map(|how| (at, how)))
@@ -66,7 +67,7 @@ pub fn ask_built(
             let motions = directed(seed, family, single, AT_ONCE.min(n.div_ceil(8) - at));
             let stored = if single { Stored::F32 } else { Stored::F64 };
             note(&mut report, device, &motions, (id, 0.0), Options { filters, stored, repeats: 0 }, &heard)?;
-            // And numbers of f32 as f64.
+            // And f32 numbers stored in f64.
             if single {
                 let how = Options { filters, ..Options::default() };
                 note(&mut report, device, &motions, (id, 0.0), how, &heard)?;
@@ -76,10 +77,11 @@ pub fn ask_built(
     Ok(report)
 }
 
-/// Whether numbers are of f32, and whether filters are run before the solver.
+/// Whether numbers fit f32, and whether filters run before the solver.
 const ALL_OPTIONS: [(bool, bool); 4] = [(true, true), (true, false), (false, true), (false, false)];
 
-/// Asks every certified solver, by an id of the catalogue and at a tolerance, and judges what is heard.
+/// Runs every certified solver on motions, for an id of the catalogue and at a tolerance, and
+/// judges the answers.
 fn note(
     report: &mut Report,
     device: &Device,
@@ -98,7 +100,7 @@ fn note(
             report.undecided += u64::from(met.is_some_and(|m| m.status == Status::Undecided));
             report.note(judge(motion, met), || {
                 format!(
-                    "{id} {}, {solver:?}, {how:?}: {met:?}, not {:?}: {:?}",
+                    "{id} {}, {solver:?}, {how:?}: got {met:?}, expected {:?}: {:?}",
                     motion.name, motion.toi, motion.case
                 )
             });

@@ -1,4 +1,5 @@
-//! Crowds: one triangle against a million, all equal, all at one time, more pairs than 32 bits count.
+//! Crowds: one triangle against a million, equal triangles, equal times, and more pairs than 32
+//! bits count.
 
 use super::report::Report;
 use crate::OneQuery;
@@ -12,17 +13,17 @@ use nearmiss::scene::CollisionFilter;
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::tri_tri::meets_exactly;
 
-/// How large the crowds are.
+/// Sizes of the crowds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Crowds {
-    /// Triangles against one.
+    /// Number of triangles against one.
     pub against_one: usize,
-    /// Equal triangles: all pairs meet.
+    /// Number of equal triangles: all pairs meet.
     pub equal: usize,
-    /// Contacts at one time.
+    /// Number of contacts at one time.
     pub ties: usize,
-    /// Whether to ask 92,683 equal triangles for their 4,295,022,903 pairs, which no list of 32 bits holds. For a GPU: a
-    /// CPU walks minutes.
+    /// Whether to run 92,683 equal triangles with 4,295,022,903 pairs, which no list of 32 bits
+    /// holds. For a GPU: a CPU needs minutes.
     pub beyond_32_bits: bool,
 }
 
@@ -30,15 +31,15 @@ impl Crowds {
     /// The sizes of the catalogue.
     pub const FULL: Crowds =
         Crowds { against_one: 1_000_000, equal: 5_000, ties: 100_000, beyond_32_bits: true };
-    /// Sizes for a CPU: seconds.
+    /// Sizes for a CPU: it runs for seconds.
     pub const SMALL: Crowds =
         Crowds { against_one: 1_000_000, equal: 1_500, ties: 50_000, beyond_32_bits: false };
 }
 
-/// Asks all crowds.
+/// Runs all crowds.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn ask_crowds(device: &Device, crowds: Crowds) -> Result<Report, Error> {
     let mut report = Report::new("crowds");
     against_one(device, crowds.against_one, &mut report)?;
@@ -50,13 +51,13 @@ pub fn ask_crowds(device: &Device, crowds: Crowds) -> Result<Report, Error> {
     Ok(report)
 }
 
-/// One large triangle against a soup: the pairs are those of asking all, one by one.
+/// One large triangle against a soup: the pairs equal those of testing each pair.
 fn against_one(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
     let soup = scene::soup(n, 42, false)?;
     let points = soup.positions_t0().to_f64();
     let corner = |v: u32| Vec3(points[v as usize].map(|x| x as f32));
     let far = points.iter().flatten().fold(0f64, |most, x| most.max(x.abs())) as f32;
-    // Through the middle of the soup, slanted.
+    // A slanted triangle through the middle of the soup.
     let one = [[-far, -far, -far * 0.5], [far, -far * 0.75, far * 0.25], [far * 0.125, far, far * 0.5]];
     let truth: Vec<[u32; 2]> = (0u32..)
         .zip(soup.faces())
@@ -73,12 +74,12 @@ fn against_one(device: &Device, n: usize, report: &mut Report) -> Result<(), Err
     report.asked += 1;
     report.missed += truth.len().saturating_sub(found.len()) as u64;
     if found.pairs() != truth || truth.is_empty() {
-        report.fail(|| format!("X42 one against {n}: {} pairs, not {}", found.len(), truth.len()));
+        report.fail(|| format!("X42 one against {n}: got {} pairs, expected {}", found.len(), truth.len()));
     }
     Ok(())
 }
 
-/// All pairs of equal triangles, by tiles and in a tree that is not deep.
+/// All pairs of equal triangles, by tiles and by a shallow tree.
 fn equal(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
     let all = n * (n - 1) / 2;
     let levels = n.next_power_of_two().trailing_zeros() as usize + 1;
@@ -91,13 +92,15 @@ fn equal(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
         report.missed += (all - found.len().min(all)) as u64;
         let depths = detector.depths();
         if found.len() != all || (broad == Broad::Tree && depths != [levels]) {
-            report.fail(|| format!("X43 {n} equal: {} pairs, not {all}; depth {depths:?}", found.len()));
+            report.fail(|| {
+                format!("X43 {n} equal: got {} pairs, expected {all}; depth {depths:?}", found.len())
+            });
         }
     }
     Ok(())
 }
 
-/// `n` tips that fall on `n` triangles at once: the same bits of time for each, always.
+/// `n` tips that fall on `n` triangles at once: all times have the same bits, in every run.
 fn ties(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
     let side = (n as f64).sqrt().ceil() as usize;
     let at = |i: usize| [(i % side * 4) as f32, (i / side * 4) as f32];
@@ -125,8 +128,9 @@ fn ties(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
     Ok(())
 }
 
-/// More pairs than a list of 32 bits can hold: of trees an error that says how much room was needed, to the byte; of tiles the answer,
-/// in slices, where most of the pairs do not meet and the answer has room.
+/// More pairs than a list of 32 bits can hold. Trees must return an error with the needed room,
+/// exact to the byte. Tiles must return the answer, in slices, if most pairs do not meet and the
+/// answer fits.
 fn beyond_32_bits(device: &Device, report: &mut Report) -> Result<(), Error> {
     const N: usize = 92_683;
     let needed = (N * (N - 1) / 2 * size_of::<nearmiss_kernels::abi::Pair>()) as u64;
@@ -148,7 +152,7 @@ fn beyond_32_bits(device: &Device, report: &mut Report) -> Result<(), Error> {
         report.fail(|| {
             let (pairs, slices) = (found.stats.triangle_pairs, found.stats.slices);
             format!(
-                "X46: {} contacts of {pairs} pairs in {slices} slices, not {N} of {candidates}",
+                "X46: got {} contacts of {pairs} pairs in {slices} slices, expected {N} of {candidates}",
                 found.len()
             )
         });
@@ -156,8 +160,8 @@ fn beyond_32_bits(device: &Device, report: &mut Report) -> Result<(), Error> {
     Ok(())
 }
 
-/// `n` equal slanted triangles, each 2^-17 above the last: their boxes all overlap, and they share no point; and one that stands
-/// through all of them.
+/// Returns `n` equal slanted triangles, each 2^-17 above the last, and one more that stands through
+/// all of them. The boxes of the slanted ones all overlap, and they share no point.
 fn slanted(n: usize) -> Result<Body, Error> {
     let above = |i: usize| i as f32 / 131_072.0;
     let corners = |i: usize| [[0.0, 0.0, above(i)], [1.0, 0.0, 1.0 + above(i)], [0.0, 1.0, 1.0 + above(i)]];

@@ -1,5 +1,6 @@
-//! The catalogue of extremes as data: what breaks other programs, and what must be said of it. `docs/internals/robustness.md` lists
-//! every id with the tests that hold it; tests run it on the CPU, `nearmiss selftest` on the machine that it is on.
+//! The catalogue of extremes as data: inputs that break other programs, with the required answers.
+//! `docs/internals/robustness.md` lists every id with its tests. Tests run it on the CPU, `nearmiss
+//! selftest` on the current machine.
 
 mod ask;
 mod built;

@@ -1,64 +1,66 @@
-//! One question of the catalogue, and the judge of what is said to it.
+//! One case of the catalogue, and the judge of its answers.
 
 use crate::case::{Case, Features};
 use nearmiss_kernels::prim::inclusion::{Params, Verdict};
 
-/// What must be said of a question by a solver that is certain.
+/// The required answer of a certified solver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Expect {
-    /// They are apart, and by more than tolerance and rounding: it must be known.
+    /// The features are apart, by more than tolerance and rounding: the answer must be separated.
     Apart,
-    /// They do not meet, but nearly: anything but a certificate.
+    /// The features do not meet, but nearly do: any answer except a certificate.
     Near,
-    /// They meet first at that time: not separated, not late, early by [`Question::early`] at most.
+    /// The features first meet at this time. The answer must be neither separated nor late, and
+    /// early by at most [`Question::early`].
     CollisionFilter(f64),
-    /// The same, and a search in f64 must be certain of it.
+    /// The same, and a solver in f64 must be certain of it.
     Sure(f64),
 }
 
-/// A question with its answer.
+/// A case with its answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Question {
-    /// Its name in `docs/internals/robustness.md`.
+    /// Its id in `docs/internals/robustness.md`.
     pub id: &'static str,
-    /// What is extreme about it.
+    /// Description of its extreme.
     pub what: &'static str,
     /// The features.
     pub case: Case,
-    /// How near may count as contact, a length.
+    /// Tolerance, a length.
     pub tolerance: f64,
-    /// Features this near are in contact, a length.
+    /// Minimum separation, a length.
     pub separation: f64,
     /// The end of the step, in (0, 1].
     pub end: f64,
-    /// The answer.
+    /// The required answer.
     pub expect: Expect,
-    /// By how much a time may be early, in parts of the step.
+    /// Largest allowed earliness, as a fraction of the step.
     pub early: f64,
-    /// By how much the answer's own time may be wrong: decimals of it are rounded.
+    /// Error of the expected time itself, which has rounded decimals.
     pub blur: f64,
-    /// f32 alone need not tell: only that nothing is missed, late or falsely certain is asked of it.
+    /// Whether the case is too fine for f32 alone, which then only must not miss, be late or
+    /// certify falsely.
     pub is_fine: bool,
 }
 
-/// The most boxes that any question of the catalogue may take, in any precision.
+/// Most boxes that any case of the catalogue may take, in any precision.
 pub const MOST_BOXES: u32 = 100;
 
-/// What is wrong with an answer.
+/// Fault of an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// A contact is called separated.
+    /// A contact was called separated.
     Missed,
     /// The time is after the contact.
     Late,
-    /// A contact is certified that there is none of, or not where it is.
+    /// A certificate without a contact, or with a wrong time.
     FalseCertificate,
-    /// Nothing of these, but not what was expected: a false alarm, too early, no certificate, too dear.
+    /// Another unexpected answer: a false alarm, too early, no certificate, too many boxes.
     Unexpected,
 }
 
 impl Question {
-    /// A question about features that touch within the whole step, at a tolerance of 1e-5.
+    /// Makes a case of features that touch within the whole step, at a tolerance of 1e-5.
     pub fn new(
         (id, what): (&'static str, &'static str),
         features: Features,
@@ -79,12 +81,12 @@ impl Question {
         }
     }
 
-    /// What a certified test is asked.
+    /// Returns the parameters of a certified test.
     pub fn params(&self) -> Params {
         Params { min_separation: self.separation, end: self.end, ..Params::new(self.tolerance) }
     }
 
-    /// What is wrong with an answer; `narrow`: it was made in f32 alone.
+    /// Returns the fault of an answer; `narrow` if it was computed in f32 alone.
     pub fn judge(&self, said: &Verdict, narrow: bool) -> Option<Fault> {
         let lenient = narrow && self.is_fine;
         let unexpected = |bad: bool| (bad && !lenient).then_some(Fault::Unexpected);

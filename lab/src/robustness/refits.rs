@@ -1,4 +1,5 @@
-//! A tree that is refitted ten thousand times: does it still hold its mesh, and find what a new one finds?
+//! A tree that is refitted ten thousand times must still hold its mesh, and find the pairs of a new
+//! tree.
 
 use super::report::Report;
 use crate::OneQuery;
@@ -12,18 +13,20 @@ use nearmiss_kernels::bv::Axes;
 use nearmiss_kernels::entry::Kernels;
 use nearmiss_kernels::math::Vec3;
 
-/// Triangles of the mesh: few, for each corner is judged in exact arithmetic in each node above it in each frame.
+/// Triangles of the mesh. They are few, since each frame checks each corner in each node above it,
+/// in exact arithmetic.
 const TRIANGLES: u32 = 24;
-/// Frames between those in which a new tree is asked too.
+/// Frames from one comparison with a new tree to the next.
 const APART: u32 = 500;
-/// The ways to refit, one a volume.
+/// The refit of each volume.
 const WAYS: [Refit; 4] = [Refit::Levels, Refit::Treelets, Refit::BottomUp, Refit::Treelets];
 
-/// A ribbon that turns, waves and drifts, by sums and products alone; its vertices at frame `k`.
+/// Returns the vertices at frame `k` of a ribbon that turns, waves and drifts, by sums and products
+/// alone.
 fn ribbon(k: u32) -> Vec<[f32; 3]> {
     let vertices = TRIANGLES + 2;
-    // A rotation by an angle that is no part of a whole turn: (3 + 4 i) / 5 to the k-th, from the last 64 steps alone, so
-    // that it costs the same in every frame.
+    // A rotation by an angle that is no rational part of a turn: (3 + 4 i) / 5 to the k-th power.
+    // Only the last 64 steps count, so that each frame costs the same.
     let (mut c, mut s) = (1.0f64, 0.0f64);
     for _ in 0..k % 64 {
         (c, s) = (0.6 * c - 0.8 * s, 0.8 * c + 0.6 * s);
@@ -33,7 +36,7 @@ fn ribbon(k: u32) -> Vec<[f32; 3]> {
         let noise =
             (i.wrapping_mul(2_654_435_761) ^ k.wrapping_mul(40_503)).wrapping_mul(2_246_822_519) >> 20;
         let (x, y) = (f64::from(i / 2), f64::from(i % 2) + f64::from(noise) / 4096.0);
-        // Folded: the second half lies over the first.
+        // Folded: the second half covers the first.
         let x = if i < vertices / 2 { x } else { f64::from(vertices / 2) - x };
         let z = f64::from(noise % 64) / 32.0;
         [c * x - s * y + drift, s * x + c * y, z - drift].map(|x| x as f32)
@@ -93,11 +96,12 @@ fn holds<V: Kernels>(
     Ok(())
 }
 
-/// Refits a small mesh in motion so often, in each volume, and judges in exact arithmetic whether every node holds every
-/// corner below it; and asks a detector that goes the same way, whose contacts must now and then be those of a new one.
+/// Refits a small moving mesh so often, in each volume. It checks in exact arithmetic that every
+/// node holds every corner below it. It also moves a detector the same way, whose contacts must
+/// equal those of a new one at intervals.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn ask_refits(device: &Device, frames: u32) -> Result<Report, Error> {
     let mut report = Report::new("refits");
     let all = &mut report;
@@ -105,13 +109,13 @@ pub fn ask_refits(device: &Device, frames: u32) -> Result<Report, Error> {
         bv.with(Holds { device, frames, refit, report: all, name: bv.name() })?;
     }
     for (bv, refit) in Bv::ALL.into_iter().zip(WAYS.into_iter().cycle()) {
-        // The default tolerance hangs on where a detector begins.
+        // The default tolerance depends on the detector's first positions.
         let continuous = Continuous::by(Certified { tolerance: Some(1e-5), ..Certified::default() });
         for query in [Query::discrete(), continuous.into()] {
             let query = query.with_bv(bv).with_refit(refit);
             let mut detector = OneQuery::new(device.clone(), vec![body(0)?], query)?;
             for k in (APART..=frames).step_by(APART as usize) {
-                // The frames in between are refitted by `holds`; here the tree jumps.
+                // `holds` refits the frames in between; this tree jumps.
                 detector.move_to(0, body(k)?)?;
                 let found: Contacts = detector.detect()?;
                 let fresh = OneQuery::new(device.clone(), vec![body(k)?], query)?.detect()?;
@@ -121,7 +125,7 @@ pub fn ask_refits(device: &Device, frames: u32) -> Result<Report, Error> {
                     report.fail(|| {
                         let (was, is) = (found.len(), fresh.len());
                         format!(
-                            "X57 {}, {}, frame {k}: {was} contacts, {is} by a new tree",
+                            "X57 {}, {}, frame {k}: got {was} contacts, {is} by a new tree",
                             bv.name(),
                             query.kind()
                         )

@@ -1,40 +1,40 @@
-//! What a suite found.
+//! Report of a suite.
 
 use super::question::Fault;
 use nearmiss::words::counted;
 use std::fmt;
 
-/// A suite's figures and its failures by id. Nothing is wrong where there are no failures.
+/// A suite's counts and its failures by id. Without failures every answer is right.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Report {
     /// The suite.
     pub suite: &'static str,
-    /// How often something was asked.
+    /// Number of answers that were judged.
     pub asked: u64,
     /// Contacts that were not found.
     pub missed: u64,
     /// Times after the contact.
     pub late: u64,
-    /// Certificates of what is not so.
+    /// Certificates without a contact, or with a wrong time.
     pub false_certificates: u64,
     /// Answers without a certificate either way.
     pub undecided: u64,
-    /// The id of each failure, and what it was; at most [`Report::SHOWN`].
+    /// Id and description of each failure; at most [`Report::SHOWN`].
     pub failures: Vec<String>,
-    /// How many failures there were.
+    /// Number of failures.
     pub failed: u64,
 }
 
 impl Report {
-    /// Failures that are kept in words.
+    /// Number of failures whose description is kept.
     pub const SHOWN: usize = 20;
 
-    /// Nothing asked yet.
+    /// Returns an empty report.
     pub fn new(suite: &'static str) -> Report {
         Report { suite, ..Report::default() }
     }
 
-    /// Whether nothing failed, and something was asked.
+    /// Returns whether no answer failed, and at least one was judged.
     pub fn is_right(&self) -> bool {
         self.failed == 0 && self.asked > 0
     }
@@ -47,7 +47,7 @@ impl Report {
         }
     }
 
-    /// Notes a question and the fault of its answer, if it has one.
+    /// Notes an answer and its fault, if it has one.
     pub fn note(&mut self, fault: Option<Fault>, text: impl FnOnce() -> String) {
         self.asked += 1;
         let Some(fault) = fault else { return };
@@ -67,7 +67,7 @@ impl fmt::Display for Report {
         let Report { suite, asked, missed, late, false_certificates, undecided, failed, .. } = self;
         write!(
             f,
-            "{suite:<20} {asked:>9} asked, {missed} missed, {late} late, {false_certificates} falsely certain, \
+            "{suite:<20} {asked:>9} tested, {missed} missed, {late} late, {false_certificates} falsely certain, \
              {undecided} undecided, {}",
             counted(*failed, "failure", "failures")
         )?;

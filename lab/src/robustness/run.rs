@@ -7,7 +7,7 @@ use super::{
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 
-/// How much of what has no natural size is asked.
+/// Sizes of the suites that have no natural size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Amount {
     /// Built contacts of each family.
@@ -19,22 +19,23 @@ pub struct Amount {
 }
 
 impl Amount {
-    /// What a machine does in about a minute; of built contacts so many a family.
+    /// Returns an amount that takes a machine about a minute, with so many built contacts per
+    /// family.
     pub fn on(is_gpu: bool, cases: usize) -> Amount {
         let (frames, crowds) = if is_gpu { (10_000, Crowds::FULL) } else { (1_000, Crowds::SMALL) };
         Amount { cases, frames, crowds }
     }
 }
 
-/// Runs every suite and tells of each as it ends.
+/// Runs every suite and passes each report on when it ends.
 ///
 /// # Errors
-/// Those of the device.
-pub fn run(device: &Device, amount: Amount, mut told: impl FnMut(&Report)) -> Result<Vec<Report>, Error> {
+/// Device errors.
+pub fn run(device: &Device, amount: Amount, mut ended: impl FnMut(&Report)) -> Result<Vec<Report>, Error> {
     let (questions, scenes) = (questions(), scenes());
     let mut all = Vec::new();
     let mut note = |report: Report| {
-        told(&report);
+        ended(&report);
         all.push(report);
     };
     note(ask_refused(device, &refused())?);

@@ -1,4 +1,4 @@
-//! The catalogue's scenes asked on a machine.
+//! Runs the catalogue's scenes on a machine.
 
 use super::report::Report;
 use super::scenes::{Numbers, Refused, Scene};
@@ -16,11 +16,11 @@ fn found(device: &Device, bodies: Vec<Body>, query: Query) -> Result<Contacts, E
     Ok(found)
 }
 
-/// Asks each scene, with every bounding volume, and judges what is found; of what stands still also whether a continuous
-/// query finds a part of it at once.
+/// Runs each scene, with every bounding volume, and judges the answers. A continuous query of a
+/// still scene must find a part of its pairs at time 0.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn ask_scenes(device: &Device, scenes: &[Scene]) -> Result<Report, Error> {
     let mut report = Report::new("scenes");
     for scene in scenes {
@@ -53,10 +53,10 @@ pub fn ask_scenes(device: &Device, scenes: &[Scene]) -> Result<Report, Error> {
     Ok(report)
 }
 
-/// Features of what stands still that meet do so at once, and their triangles meet.
+/// Checks that features of a still scene only meet at time 0, and that their triangles meet.
 fn at_once(bodies: &[Body], found: &Contacts, pairs: Option<&[[u32; 2]]>) -> Option<String> {
     if let Some(late) = found.contacts().iter().find(|c| c.toi != 0.0) {
-        return Some(format!("at rest, but not at once: {late:?}"));
+        return Some(format!("at rest, but not at time 0: {late:?}"));
     }
     let sure: Vec<_> = found.contacts().iter().filter(|c| c.status == Status::Certified).copied().collect();
     let triangles = triangle_contacts(&sure, bodies);
@@ -68,17 +68,17 @@ fn at_once(bodies: &[Body], found: &Contacts, pairs: Option<&[[u32; 2]]>) -> Opt
     })
 }
 
-/// Asks each still scene again with its triangles, their corners, the axes and the bodies in other orders, each
-/// order in one of the volumes.
+/// Runs each still scene again with other orders of its triangles, their corners, the axes and the
+/// bodies. Each order uses one of the volumes.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn ask_turned_scenes(device: &Device, scenes: &[Scene]) -> Result<Report, Error> {
     const CORNERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
     let mut report = Report::new("scenes turned");
     for scene in scenes.iter().filter(|s| s.query().kind() == QueryKind::Discrete) {
         let truth = scene.pairs();
-        // Six orders for one body; for two, all thirty-six of the one and the other.
+        // Six orders for one body; for two, all thirty-six combinations.
         let second = scene.bodies.len() == 2;
         for turn in 0..if second { 36 } else { 6 } {
             let turned = |body: &Numbers, order: usize| {
@@ -88,7 +88,7 @@ pub fn ask_turned_scenes(device: &Device, scenes: &[Scene]) -> Result<Report, Er
                 };
                 Numbers {
                     t0: body.t0.iter().map(point).collect(),
-                    // Triangles backwards.
+                    // Triangles in reverse order.
                     faces: body.faces.iter().rev().map(|f| corners.map(|k| f[k])).collect(),
                     ..body.clone()
                 }
@@ -114,7 +114,7 @@ pub fn ask_turned_scenes(device: &Device, scenes: &[Scene]) -> Result<Report, Er
             if pairs != truth {
                 report.fail(|| {
                     format!(
-                        "X53 {} {}, turn {turn}: {} pairs, not {}",
+                        "X53 {} {}, turn {turn}: got {} pairs, expected {}",
                         scene.id,
                         scene.what,
                         pairs.len(),
@@ -127,10 +127,10 @@ pub fn ask_turned_scenes(device: &Device, scenes: &[Scene]) -> Result<Report, Er
     Ok(report)
 }
 
-/// Offers each body, and looks for the words of its refusal; one that is accepted is asked against itself.
+/// Builds each body, and checks the words of its refusal; an accepted one is tested against itself.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn ask_refused(device: &Device, all: &[Refused]) -> Result<Report, Error> {
     let mut report = Report::new("refusals");
     for row in all {

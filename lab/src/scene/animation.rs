@@ -1,31 +1,34 @@
-//! Scenes that move on, frame after frame.
+//! Scenes that continue, frame after frame.
 
 use super::{cloth_ball, flamenco, nbody, princess, room};
 use nearmiss::Error;
 use nearmiss::memory;
 use nearmiss::mesh::{Body, Mesh, Positions, Problem};
 
-/// The names that [`animation`] knows.
+/// The names of the animations of [`animation`].
 pub const ANIMATIONS: [&str; 4] = ["cloth-ball", "flamenco", "n-body", "princess"];
 
-/// Most bytes that a triangle takes in an animation: points in doubles, their speeds, and what holds cloth together.
+/// Most bytes per triangle of an animation: points in doubles, their speeds, and the links of
+/// cloth.
 const OF_A_TRIANGLE: u64 = 600;
 
-/// What is asked of an animation.
+/// Options of an animation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Triangles, about.
+    /// Approximate number of triangles.
     pub triangles: usize,
-    /// What its chances depend on.
+    /// Seed of the random numbers.
     pub seed: u64,
-    /// Whether cloth is kept from passing through itself and the body under it, by nearmiss's own continuous detection:
-    /// no pair of triangles meets in any frame. Takes several detections a substep, ten substeps a frame: for small
-    /// meshes. Without it cloth passes through itself freely, though not through a body.
+    /// Whether cloth is kept from passing through itself and the body under it, by nearmiss's own
+    /// continuous detection. Then no pair of triangles meets in any frame. It takes several
+    /// detections per substep, ten substeps per frame, so it is for small meshes. Without it cloth
+    /// passes through itself freely, though not through a body.
     pub contact: bool,
 }
 
-/// A scene that is computed frame by frame, in memory: the first frame is there at once, each further one is the work of
-/// [`Animation::advance`]. The same options give the same bits on every machine.
+/// A scene that is computed frame by frame, in memory. The first frame is available at once;
+/// [`Animation::advance`] computes each further one. The same options give the same bits on every
+/// machine.
 pub struct Animation {
     name: String,
     faces: Vec<[u32; 3]>,
@@ -34,7 +37,7 @@ pub struct Animation {
     opening: u64,
 }
 
-/// What plays: positions now, and one frame on.
+/// The motion of an animation: its current positions, and a step of one frame.
 pub(super) trait Act {
     fn positions(&self) -> Vec<[f32; 3]>;
     fn advance(&mut self) -> Result<(), Error>;
@@ -49,7 +52,8 @@ impl Act for super::xpbd::World {
     }
 }
 
-/// The animation `name` with about `triangles` triangles, without contact of cloth with itself.
+/// Makes the animation `name` with about `triangles` triangles, without contact of cloth with
+/// itself.
 ///
 /// # Errors
 /// As [`animation_with`].
@@ -57,11 +61,13 @@ pub fn animation(name: &str, triangles: usize, seed: u64) -> Result<Animation, E
     animation_with(name, Options { triangles, seed, contact: false })
 }
 
-/// The animation `name` as the options say. Cost: memory, and with contact two trees; no frame is computed yet.
+/// Makes the animation `name` with these options. Cost: memory, and two trees with contact; no
+/// frame is computed yet.
 ///
 /// # Errors
-/// [`Problem::UnknownScene`] with the known names, [`Problem::NoTriangles`] for 0, [`Problem::TooMany`] above
-/// [`super::MAX_TRIANGLES`], each as [`Error::Input`]; [`Error::InvalidArgument`] for contact in `n-body`, which has no cloth.
+/// [`Problem::UnknownScene`] with the known names, [`Problem::NoTriangles`] for 0,
+/// [`Problem::TooMany`] above [`super::MAX_TRIANGLES`], each as [`Error::Input`];
+/// [`Error::InvalidArgument`] for contact in `n-body`, which has no cloth.
 pub fn animation_with(name: &str, options: Options) -> Result<Animation, Error> {
     let Options { triangles, seed, contact } = options;
     let input = |problem| Error::Input { file: name.into(), problem };
@@ -79,8 +85,8 @@ pub fn animation_with(name: &str, options: Options) -> Result<Animation, Error> 
         "princess" => (princess::world(triangles, seed), princess::OPENING),
         _ if contact => {
             return Err(Error::InvalidArgument {
-                what: format!("contact of cloth in {name}, which has none"),
-                advice: "choose cloth-ball, flamenco or princess, or leave contact out".into(),
+                what: format!("the scene {name} has no cloth, so contact does not apply"),
+                advice: "use cloth-ball, flamenco or princess, or leave contact out".into(),
             });
         }
         _ => {
@@ -102,35 +108,36 @@ pub fn animation_with(name: &str, options: Options) -> Result<Animation, Error> 
 }
 
 impl Animation {
-    /// The scene's name.
+    /// Returns the scene's name.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Three vertex indices a triangle: the same in all frames.
+    /// Returns three vertex indices per triangle: the same in all frames.
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.faces
     }
 
-    /// The number of the present frame, from 0.
+    /// Returns the number of the current frame, from 0.
     pub fn frame(&self) -> u64 {
         self.frame
     }
 
-    /// The frame from which on the scene is what it stands in for; before, cloth falls and gathers.
+    /// Returns the frame from which on the scene resembles its original; before, cloth falls and
+    /// gathers.
     pub fn opening(&self) -> u64 {
         self.opening
     }
 
-    /// The positions of the present frame.
+    /// Returns the positions of the current frame.
     pub fn positions(&self) -> Vec<[f32; 3]> {
         self.act.positions()
     }
 
-    /// Goes on by `frames` frames.
+    /// Advances by `frames` frames.
     ///
     /// # Errors
-    /// With contact, those of detection.
+    /// With contact, errors of detection.
     pub fn advance(&mut self, frames: u64) -> Result<(), Error> {
         for _ in 0..frames {
             self.act.advance()?;
@@ -139,15 +146,15 @@ impl Animation {
         Ok(())
     }
 
-    /// The present frame as a mesh. Copies.
+    /// Returns the current frame as a mesh, a copy.
     ///
     /// # Errors
-    /// None in fact: positions stay finite.
+    /// None in practice: positions stay finite.
     pub fn mesh(&self) -> Result<Mesh, Error> {
         Mesh::new(&self.name, Positions::F32(self.positions()), self.faces.clone())
     }
 
-    /// The present frame, and goes on by one.
+    /// Returns the current frame, and advances by one.
     ///
     /// # Errors
     /// As [`Animation::advance`].
@@ -157,7 +164,7 @@ impl Animation {
         Ok(mesh)
     }
 
-    /// The step from the present frame to the next as a moving body, and goes on by one.
+    /// Returns the step from the current frame to the next as a moving body, and advances by one.
     ///
     /// # Errors
     /// As [`Animation::advance`].

@@ -6,15 +6,16 @@ use super::{Builder, Rng, cube_root_up, room};
 use nearmiss::Error;
 use nearmiss::mesh::Body;
 
-/// Triangles of a ball of the usual fineness (3).
+/// Triangles of a ball of the usual subdivision (3).
 const USUAL: usize = 512;
 
-/// `count` balls of radius 1, each of `8 * 4^subdivisions` triangles, that only translate, as in the n-body scene
-/// of UNC: at random in a cube of which they fill about a quarter, some overlapping from the start, each by a random
-/// vector of up to 1/2 along each axis, some five edges of a ball of subdivision 3.
+/// Makes `count` balls of radius 1, each of `8 * 4^subdivisions` triangles. They only translate, as
+/// in the n-body scene of UNC. They start at random in a cube of which they fill about a quarter,
+/// some overlapping. Each moves by a random vector of up to 1/2 along each axis: about five edges
+/// of a ball of subdivision 3.
 ///
 /// # Errors
-/// More than [`super::MAX_TRIANGLES`].
+/// If there are more than [`super::MAX_TRIANGLES`].
 pub fn balls(count: usize, subdivisions: u32, seed: u64) -> Result<Body, Error> {
     let of_each = 8u64.saturating_mul(4u64.saturating_pow(subdivisions));
     room("balls", of_each.saturating_mul(count as u64))?;
@@ -34,8 +35,8 @@ pub fn balls(count: usize, subdivisions: u32, seed: u64) -> Result<Body, Error> 
     scene.body("balls")
 }
 
-/// The count and subdivisions for about `triangles`: at least eight balls if there can be, of the usual fineness if
-/// there are enough triangles for it.
+/// Returns the count and subdivisions for about `triangles`: at least eight balls if possible, of
+/// the usual subdivision if there are enough triangles.
 pub(super) fn nearest(triangles: usize) -> (usize, u32) {
     let mut of_each = USUAL;
     let mut subdivisions = 3;

@@ -1,4 +1,5 @@
-//! Scenes of many bodies that go on for ever: a pile of balls and a cloth over a floor, and many small worlds in one place.
+//! Scenes of many bodies that continue forever: a pile of balls and a cloth over a floor, and many
+//! small worlds in one place.
 
 use super::sphere::{Sphere, sphere};
 use super::{Rng, room};
@@ -6,17 +7,17 @@ use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::scene::{BodyId, CollisionFilter, Motion, Pose, Scene};
 use nearmiss::{Error, memory};
 
-/// A scene, and how its bodies move.
+/// A scene, and the motion of its bodies.
 #[derive(Clone, Debug)]
 pub struct Bodies {
-    /// The bodies, where they are at the first step's start.
+    /// The bodies, at the start of the first step.
     pub scene: Scene,
     balls: Vec<(BodyId, Ball)>,
-    /// The cloth, its squares a side and half its width.
+    /// The cloth, its number of squares a side and half its width.
     cloth: Option<(BodyId, u32, f64)>,
 }
 
-/// How a ball moves: it falls slowly, drifts and turns.
+/// Motion of a ball: it falls slowly, drifts and turns.
 #[derive(Clone, Copy, Debug)]
 struct Ball {
     start: [f64; 3],
@@ -24,17 +25,17 @@ struct Ball {
     spin: [f64; 3],
 }
 
-/// Where a step takes a body.
+/// End positions of a body in a step.
 #[derive(Clone, Debug)]
 pub enum Move {
-    /// A rigid one.
+    /// A rigid body's poses.
     Poses([Pose; 2]),
-    /// A deformable one.
+    /// A deformable body's positions.
     Step([Positions; 2]),
 }
 
 impl Move {
-    /// As a detector is told.
+    /// Returns the motion as a detector takes it.
     pub fn input(&self) -> Motion<'_> {
         match self {
             Move::Poses(poses) => Motion::PoseStep(*poses),
@@ -43,7 +44,8 @@ impl Move {
     }
 }
 
-/// Steps after which everything moves back, so that a scene stays together however long it goes on.
+/// Period in steps: in its second half everything moves back, so that a scene stays together
+/// forever.
 const PERIOD: u32 = 64;
 
 impl Ball {
@@ -62,17 +64,18 @@ impl Ball {
     }
 }
 
-/// 0, 1, up to half of the period, and down again.
+/// Returns 0, 1, up to half of the period, and down again.
 fn there_and_back(step: u32) -> u32 {
     (step % PERIOD).min(PERIOD - step % PERIOD)
 }
 
 impl Bodies {
-    /// `balls` rigid balls of 128 triangles in layers on a static floor of `floor` squares a side, about a tenth of each
-    /// in its neighbours, and above them, tested against itself too, a cloth of `cloth` squares a side that sinks into them.
+    /// Makes a pile of `balls` rigid balls of 128 triangles in layers on a static floor of `floor`
+    /// squares a side. Neighbouring balls overlap by about a tenth. Above them a cloth of `cloth`
+    /// squares a side, tested against itself too, sinks into them.
     ///
     /// # Errors
-    /// More than [`super::MAX_TRIANGLES`].
+    /// If there are more than [`super::MAX_TRIANGLES`].
     pub fn pile(balls: usize, cloth: u32, floor: u32) -> Result<Bodies, Error> {
         let squares = u64::from(cloth).pow(2) + u64::from(floor).pow(2);
         room("pile", 2 * squares + 128 * balls as u64)?;
@@ -103,11 +106,12 @@ impl Bodies {
         Ok(Bodies { scene, balls: movers, cloth: sheet.transpose()? })
     }
 
-    /// `count` worlds that never meet, all in one place: each an environment of `balls` rigid balls of 128 triangles in a cube
-    /// that they fill about half, on a floor of two static triangles.
+    /// Makes `count` worlds that never meet, all in one place. Each is an environment with a floor
+    /// of two static triangles. Above it, `balls` rigid balls of 128 triangles fill about half of a
+    /// cube.
     ///
     /// # Errors
-    /// More than [`super::MAX_TRIANGLES`].
+    /// If there are more than [`super::MAX_TRIANGLES`].
     pub fn worlds(count: u32, balls: u32) -> Result<Bodies, Error> {
         let triangles = u64::from(count) * (128 * u64::from(balls) + 2);
         room("worlds", triangles)?;
@@ -131,7 +135,7 @@ impl Bodies {
         Ok(Bodies { scene, balls: movers, cloth: None })
     }
 
-    /// Where everything that moves goes in a step.
+    /// Returns the end positions of all moving bodies in a step.
     pub fn step(&self, step: u32) -> Vec<(BodyId, Move)> {
         let balls = self
             .balls
@@ -144,17 +148,17 @@ impl Bodies {
     }
 }
 
-/// A ball as a mesh.
+/// Returns a ball as a mesh.
 fn round(name: &str, ball: &Sphere, radius: f64) -> Result<Mesh, Error> {
     let points = ball.points.iter().map(|p| p.map(|x| (radius * x) as f32)).collect();
     Mesh::new(name, Positions::F32(points), ball.faces.clone())
 }
 
-/// Height of the cloth at the start: over five layers of balls.
+/// Height of the cloth at the start: above five layers of balls.
 const LIFT: f64 = 5.2;
 
-/// A square sheet of `side` squares a side, from `-half` to `half`, with folds that lean over where it has many squares; it
-/// lies lower by `down`, and sinks a little at each step.
+/// Returns a square sheet of `side` squares a side, from `-half` to `half`. With many squares it
+/// has folds that lean over. It is lower by `down`, and sinks a little at each step.
 fn waves(side: u32, half: f64, (step, down): (u32, f64)) -> Positions {
     let sunk = down + 0.01 * f64::from(there_and_back(step));
     let at = |i: u32, j: u32| {
@@ -168,7 +172,7 @@ fn waves(side: u32, half: f64, (step, down): (u32, f64)) -> Positions {
     Positions::F32((0..=side).flat_map(|j| (0..=side).map(move |i| at(i, j))).collect())
 }
 
-/// The triangles of such a sheet.
+/// Returns the triangles of such a sheet.
 fn squares_of(side: u32) -> Vec<[u32; 3]> {
     let square = |i: u32| {
         let low = i / side * (side + 1) + i % side;

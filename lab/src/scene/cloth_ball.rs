@@ -1,4 +1,5 @@
-//! A square cloth falls onto a turning ball, slides, twists and folds: a stand-in for UNC's cloth on a ball.
+//! A square cloth falls onto a turning ball, slides, twists and folds: a substitute for UNC's cloth
+//! on a ball.
 
 use super::known::at_least_one;
 use super::sphere::sphere;
@@ -13,11 +14,12 @@ pub(super) const OPENING: u64 = 72;
 const HALF: f64 = 4.0;
 /// Height of the ball's centre above the floor.
 const CENTRE: f64 = 1.34;
-/// Turns of the ball in a frame.
+/// Turns of the ball per frame.
 const SPIN: f64 = 0.0085;
-/// How far vertices are shaken off the plane, in cells, so that no symmetry is exact.
+/// Random shift of vertices off the plane, in cells, so that no symmetry is exact.
 const SHAKE: f64 = 0.05;
-/// Where the cloth stops before the ball, in cells: its triangles cut off less than that from the ball.
+/// Distance from the ball at which vertices stop, in cells: triangles between them then stay
+/// outside of the ball.
 const MARGIN: f64 = 0.35;
 const FABRIC: Fabric = Fabric { stretch: 0.0, shear: 0.1, bend: 200.0 };
 
@@ -37,7 +39,7 @@ pub(super) fn world(triangles: usize, seed: u64) -> World {
     let obstacles = Obstacles {
         ellipsoid: Some((Vec3([0.0, 0.0, CENTRE]), [1.0 + MARGIN * cell; 2])),
         floor: Some(MARGIN * cell),
-        // The ball takes the cloth along, the floor hardly holds it.
+        // The ball carries the cloth along; the floor hardly holds it.
         friction: [5.0, 0.05],
     };
     let mut world = World::new(Setting { pose, obstacles, gravity: 0.003, drag: 0.02 });

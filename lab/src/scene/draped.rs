@@ -1,9 +1,9 @@
 //! A cloth draped on a ball, two frames of a step.
 //!
-//! Made by formula, not by simulation (that is `cloth-ball`): a square cloth lies on the top of a ball, hangs down beyond its
-//! equator and is thrown into pleats that fold over each other. In the step the cloth sinks and turns a little,
-//! its pleats tighten, and the ball rises into it. With 92,230 triangles 5,802 pairs meet at t0 and 10,504 at t1, and
-//! a vertex moves by 2.2 mean edges.
+//! Made by formula, not by simulation (that is `cloth-ball`). A square cloth rests on the top of a
+//! ball. It hangs down beyond the equator, in pleats that fold over each other. In the step the
+//! cloth sinks and turns a little, its pleats tighten, and the ball rises into it. With 92,230
+//! triangles, 5,802 pairs meet at t0 and 10,504 at t1. A vertex moves by 2.2 mean edges.
 
 use super::known::{at_least_one, strip};
 use super::soup::add;
@@ -13,16 +13,17 @@ use super::{Builder, Rng, room, square_root};
 use nearmiss::Error;
 use nearmiss::mesh::Body;
 
-/// Half the cloth's width. The ball has about radius 1, and its equator is 2 from the middle of the cloth.
+/// Half the cloth's width. The ball has about radius 1, and its equator is 2 from the middle of the
+/// cloth.
 const HALF: f64 = 2.8;
 /// Pleats in a quarter of the way around.
 const PLEATS: f64 = 6.0;
 /// Radius of the ball, below the cloth's 1.
 const BALL: f64 = 0.97;
-/// How far vertices are shaken off the formula, in cells of the cloth, so that no symmetry is exact.
+/// Random shift of vertices off the formula, in cells of the cloth, so that no symmetry is exact.
 const SHAKE: f64 = 0.05;
 
-/// What differs between the two frames.
+/// Parameters that differ between the two frames.
 struct Frame {
     /// Height of the cloth.
     lift: f64,
@@ -38,10 +39,10 @@ struct Frame {
 const T0: Frame = Frame { lift: 0.0, lean: 0.11, stand: 0.08, turn: 0.0, ball: 0.0 };
 const T1: Frame = Frame { lift: -0.02, lean: 0.125, stand: 0.075, turn: 0.1, ball: 0.025 };
 
-/// About `triangles` (within 2 % from 1,000 on), a tenth of them in the ball.
+/// Makes the scene with about `triangles` (within 2 % from 1,000 on), a tenth of them in the ball.
 ///
 /// # Errors
-/// More than [`super::MAX_TRIANGLES`].
+/// If there are more than [`super::MAX_TRIANGLES`].
 pub fn draped(triangles: usize) -> Result<Body, Error> {
     room("draped", triangles as u64)?;
     let frequency = square_root(triangles as f64 / 80.0);
@@ -75,18 +76,19 @@ pub fn draped(triangles: usize) -> Result<Body, Error> {
     scene.body("draped")
 }
 
-/// Where the point (u, v) of the cloth lies.
+/// Returns the position of the point (u, v) of the cloth.
 fn lies(u: f64, v: f64, frame: &Frame) -> [f64; 3] {
     let r = (u * u + v * v).sqrt();
     if r == 0.0 {
         return [0.0, 0.0, 1.0 + frame.lift];
     }
     let outward = [u / r, v / r];
-    // On the ball as a stereographic map lays it, below the equator straight down.
+    // On the ball by a stereographic map; below the equator straight down.
     let t = (0.5 * r).min(1.0);
     let square = 1.0 + t * t;
     let (radius, height) = (2.0 * t / square, (1.0 - t * t) / square - 0.5 * (r - 2.0).max(0.0));
-    // A meander around the ball: it stands out once a pleat, and leans to both sides twice; it begins above the equator.
+    // A meander around the ball, from above the equator on. Per pleat it stands out once, and leans
+    // to both sides twice.
     let pleat = PLEATS * quarter_turns(outward) + frame.turn;
     let depth = ((r - 1.2) / 1.2).clamp(0.0, 1.0);
     let stand = radius + depth * frame.stand * (1.0 + wave(pleat));
@@ -94,7 +96,8 @@ fn lies(u: f64, v: f64, frame: &Frame) -> [f64; 3] {
     [outward[0] * stand - outward[1] * lean, outward[1] * stand + outward[0] * lean, height + frame.lift]
 }
 
-/// How far around a direction is, in [0, 4): not the angle but the way along a square, which needs no arc tangent.
+/// Returns how far around a direction is, in [0, 4). It measures the way along a square instead of
+/// the angle, so it needs no arc tangent.
 fn quarter_turns(d: [f64; 2]) -> f64 {
     let part = d[1] / (d[0].abs() + d[1].abs());
     match (d[0] >= 0.0, d[1] >= 0.0) {

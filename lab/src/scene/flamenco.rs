@@ -1,4 +1,4 @@
-//! Skirts over skirts, a hair apart, on a dancer who turns: a stand-in for UNC's Flamenco.
+//! Skirts over skirts, a hair apart, on a dancer who turns: a substitute for UNC's Flamenco.
 
 use super::Rng;
 use super::turn::{around, ring, wave};
@@ -7,23 +7,23 @@ use super::xpbd::{Fabric, Obstacles, Pose, Setting, World};
 /// Frames after which the skirts swing.
 pub(super) const OPENING: u64 = 30;
 
-/// Skirts.
+/// Number of skirts.
 const LAYERS: u32 = 6;
 /// Radius of the waist of the innermost skirt, and length of a skirt.
 const WAIST: f64 = 0.3;
 const LENGTH: f64 = 2.0;
 /// Radius gained along a skirt.
 const FLARE: f64 = 1.0;
-/// Distance of a skirt from the next.
+/// Distance from one skirt to the next.
 const HAIR: f64 = 0.01;
-/// Ruffles around a skirt, and how far they stand out at the hem.
+/// Number of ruffles around a skirt, and how far they stand out at the hem.
 const RUFFLES: f64 = 14.0;
 const STAND: f64 = 0.12;
-/// How far vertices are shaken, in cells; less than half of [`HAIR`] in any case.
+/// Random shift of vertices, in cells; always less than half of [`HAIR`].
 const SHAKE: f64 = 0.02;
 const FABRIC: Fabric = Fabric { stretch: 0.0, shear: 0.01, bend: 0.1 };
 
-/// The dancer turns to and fro, and sways.
+/// Pose of the dancer, who turns to and fro, and sways.
 fn pose(time: f64) -> Pose {
     Pose::new(0.35 * wave(time / 60.0), [0.2 * wave(time / 90.0), 0.1 * wave(time / 45.0), 0.0])
 }

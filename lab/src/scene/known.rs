@@ -1,17 +1,19 @@
-//! Scenes whose answer is known beforehand.
+//! Scenes with a known answer.
 
 use super::{Builder, room, square_root};
 use nearmiss::Error;
 use nearmiss::mesh::Body;
 
-/// Two grids of triangles: a floor of `cells` by `cells` unit squares in z = 0, and across it, in the middle of each
-/// of its rows, a wall of 1 by `cells` unit squares, shifted by a quarter along its row. `4 cells^2` triangles, still.
+/// Makes two grids of triangles, `4 cells^2` in all, still. The floor has `cells` by `cells` unit
+/// squares in z = 0. A wall of 1 by `cells` unit squares stands across the middle of each of its
+/// rows. Each wall is shifted by a quarter along its row.
 ///
-/// The discrete answer is [`grid_pairs`]. All coordinates are multiples of 1/4, exact in floats, and every test of
-/// the answer has a margin of 1/4 (a third would not be exact): no rounding, volume or order may change it.
+/// The discrete answer is [`grid_pairs`]. All coordinates are multiples of 1/4, exact in floats.
+/// Every test of the answer has a margin of 1/4 (a third would not be exact). No rounding, volume
+/// or order may change it.
 ///
 /// # Errors
-/// More than [`super::MAX_TRIANGLES`].
+/// If there are more than [`super::MAX_TRIANGLES`].
 pub fn grid(cells: u32) -> Result<Body, Error> {
     room("grid", u64::from(cells).saturating_mul(u64::from(cells)).saturating_mul(4))?;
     let mut scene = Builder::default();
@@ -32,52 +34,54 @@ pub(super) fn strip(scene: &mut Builder, low: &[u32], high: &[u32]) {
     scene.faces.extend(strip_faces(low, high));
 }
 
-/// Two triangles for each square between two rows of vertices.
+/// Returns two triangles for each square between two rows of vertices.
 pub(super) fn strip_faces<'a>(low: &'a [u32], high: &'a [u32]) -> impl Iterator<Item = [u32; 3]> + 'a {
     low.windows(2).zip(high.windows(2)).flat_map(|(l, h)| [[l[0], l[1], h[1]], [l[0], h[1], h[0]]])
 }
 
-/// How many pairs of triangles of [`grid`] meet and share no vertex: `cells (4 cells - 1)`.
+/// Returns how many pairs of triangles of [`grid`] meet and share no vertex: `cells (4 cells - 1)`.
 ///
-/// A wall meets the floor in a line. The floor's triangles cut it at multiples of 1/2, the wall's at odd multiples of
-/// 1/4; on the common part, from 1/4 to `cells`, that is `4 cells - 2` cuts, so one pair more.
+/// A wall meets the floor in a line. The floor's triangles cut it at multiples of 1/2, the wall's
+/// at odd multiples of 1/4. The common part, from 1/4 to `cells`, has `4 cells - 2` cuts, so one
+/// pair more.
 pub fn grid_pairs(cells: u32) -> u64 {
     let cells = u64::from(cells);
     cells.saturating_mul((4 * cells).saturating_sub(1))
 }
 
-/// The `cells` for about `triangles`.
+/// Returns the `cells` for about `triangles`.
 pub(super) fn nearest(triangles: usize) -> u32 {
     square_root(triangles as f64 / 4.0)
 }
 
-/// The whole number nearest to `x`, at least 1.
+/// Returns the whole number nearest to `x`, at least 1.
 pub(super) fn at_least_one(x: f64) -> u32 {
     (x + 0.5).floor().clamp(1.0, 1e9) as u32
 }
 
-/// `n` triangles with the same three corners, each with its own vertices: all `n (n - 1) / 2` pairs meet. Still.
+/// Makes `n` triangles with the same three corners, each with its own vertices: all `n (n - 1) / 2`
+/// pairs meet. Still.
 ///
 /// # Errors
-/// More than [`super::MAX_TRIANGLES`].
+/// If there are more than [`super::MAX_TRIANGLES`].
 pub fn identical(n: usize) -> Result<Body, Error> {
     repeated("identical", n, |_| [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 }
 
-/// `n` parallel triangles whose centroids stand on the x axis, 1 apart: no pair meets. Still.
+/// Makes `n` parallel triangles with centroids on the x axis, 1 apart: no pair meets. Still.
 ///
 /// Exact up to 2^24 triangles; past that, floats merge neighbours.
 ///
 /// # Errors
-/// More than [`super::MAX_TRIANGLES`].
+/// If there are more than [`super::MAX_TRIANGLES`].
 pub fn line(n: usize) -> Result<Body, Error> {
     repeated("line", n, |i| [[i as f64, 1.0, 0.0], [i as f64, -1.0, 1.0], [i as f64, 0.0, -1.0]])
 }
 
-/// One triangle: no pair. Still.
+/// Makes one triangle: no pair. Still.
 ///
 /// # Errors
-/// None in fact.
+/// None in practice.
 pub fn single() -> Result<Body, Error> {
     repeated("single", 1, |_| [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 }

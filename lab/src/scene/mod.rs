@@ -1,11 +1,12 @@
-//! Scenes made by this program: for the README, the self-test, tests and benches.
+//! Generated scenes: for the README, the self-test, tests and benches.
 //!
-//! Those of [`FORMULAS`] have one or two frames; those of [`ANIMATIONS`] go on for ever, an [`Animation`] each; [`Bodies`] are
-//! scenes of many bodies.
+//! Those of [`FORMULAS`] have one or two frames. Those of [`ANIMATIONS`] continue forever, as an
+//! [`Animation`]. [`Bodies`] are scenes of many bodies.
 //!
-//! A scene is the same, bit by bit, on every machine and in every version of every crate: random numbers come from
-//! our own [`Rng`], and coordinates only from `+ - * /`, `sqrt`, `floor` and comparisons in double precision, which
-//! IEEE 754 fixes, then one rounding to single. No `sin`, `cos` or `cbrt`, which differ between systems.
+//! A scene is the same, bit by bit, on every machine and with every version of every crate. Random
+//! numbers come from our own [`Rng`]. Coordinates only use `+ - * /`, `sqrt`, `floor` and
+//! comparisons in double precision, which IEEE 754 fixes, then one rounding to single. No `sin`,
+//! `cos` or `cbrt`, which differ between systems.
 
 mod animation;
 mod balls;
@@ -36,7 +37,7 @@ use nearmiss::Error;
 use nearmiss::memory;
 use nearmiss::mesh::{Body, Mesh, Positions, Problem};
 
-/// The names that [`scene`] knows.
+/// The names of the scenes of [`scene`].
 pub const NAMES: [&str; 12] = [
     "balls",
     "cloth-ball",
@@ -52,16 +53,17 @@ pub const NAMES: [&str; 12] = [
     "soup-moving",
 ];
 
-/// Those of [`NAMES`] that are made by formula, still or with the two ends of a step; the others are [`ANIMATIONS`].
+/// Names of scenes made by formula, still or with the two ends of a step; the others are
+/// [`ANIMATIONS`].
 pub const FORMULAS: [&str; 8] =
     ["balls", "draped", "grid", "identical", "line", "single", "soup", "soup-moving"];
 
-/// Those of [`NAMES`] that use chance: a seed makes another scene of each.
+/// Names of scenes with random numbers: they depend on the seed.
 pub const SEEDED: [&str; 7] =
     ["balls", "cloth-ball", "flamenco", "n-body", "princess", "soup", "soup-moving"];
 
-/// Triangles of a scene where none are asked for: the thesis's number for the scenes that it has, for the others that of
-/// UNC's cloth on a ball.
+/// Returns the default number of triangles of a scene: the thesis's number for its scenes, that of
+/// UNC's cloth on a ball for the others.
 pub fn usual(name: &str) -> usize {
     match name {
         "flamenco" => 49_000,
@@ -71,16 +73,19 @@ pub fn usual(name: &str) -> usize {
     }
 }
 
-/// Most triangles of a generated scene, 2^27: with three vertices each they stay below the limits of a mesh.
+/// Most triangles of a generated scene, 2^27: with three vertices each they stay below the limits
+/// of a mesh.
 pub const MAX_TRIANGLES: u64 = 1 << 27;
 
-/// The scene `name` with about `triangles` triangles (`single` has one whatever is asked; each generator says how
-/// near it comes). `seed` shifts the random ones: `balls`, `soup`, `soup-moving`, and the animations. Of an animation
-/// it is the step from its opening to the next frame; the frames before have to be computed first.
+/// Makes the scene `name` with about `triangles` triangles. `single` always has one; each generator
+/// states its accuracy. `seed` changes the random scenes: `balls`, `soup`, `soup-moving`, and the
+/// animations. An animation gives the step from its opening to the next frame; earlier frames are
+/// computed first.
 ///
 /// # Errors
-/// [`Problem::UnknownScene`] with the known names, [`Problem::NoTriangles`] for 0, [`Problem::TooMany`] above
-/// [`MAX_TRIANGLES`]; each as [`Error::Input`] with the scene's name for a file.
+/// [`Problem::UnknownScene`] with the known names, [`Problem::NoTriangles`] for 0,
+/// [`Problem::TooMany`] above [`MAX_TRIANGLES`]; each as [`Error::Input`] with the scene's name for
+/// a file.
 pub fn scene(name: &str, triangles: usize, seed: u64) -> Result<Body, Error> {
     if triangles == 0 && NAMES.contains(&name) {
         return Err(Error::Input { file: name.into(), problem: Problem::NoTriangles });
@@ -109,10 +114,11 @@ pub fn scene(name: &str, triangles: usize, seed: u64) -> Result<Body, Error> {
     }
 }
 
-/// Most bytes that a triangle takes while a scene is made: three vertices at two ends, lists that double as they grow.
+/// Most bytes per triangle while a scene is made: three vertices at two ends, in lists that double
+/// as they grow.
 const OF_A_TRIANGLE: u64 = 200;
 
-/// Refuses more triangles than a scene may have, or than there is memory for, before anything is allocated for them.
+/// Refuses more triangles than a scene may have, or than memory holds, before any allocation.
 fn room(name: &str, triangles: u64) -> Result<(), Error> {
     if triangles > MAX_TRIANGLES {
         let problem = Problem::TooMany { what: "triangles", count: triangles, limit: MAX_TRIANGLES };
@@ -130,19 +136,20 @@ struct Builder {
 }
 
 impl Builder {
-    /// Adds a vertex that stands still, or in a still scene; its index. `room` keeps indices below 2^32.
+    /// Adds a vertex that stands still, or in a still scene; returns its index. `room` keeps
+    /// indices below 2^32.
     fn vertex(&mut self, p: [f64; 3]) -> u32 {
         self.t0.push(p.map(|x| x as f32));
         self.t0.len() as u32 - 1
     }
 
-    /// Adds a vertex that moves from `p` to `q`; its index.
+    /// Adds a vertex that moves from `p` to `q`; returns its index.
     fn moving(&mut self, p: [f64; 3], q: [f64; 3]) -> u32 {
         self.t1.push(q.map(|x| x as f32));
         self.vertex(p)
     }
 
-    /// The body: moving if its vertices were added as moving.
+    /// Returns the body: moving if its vertices were added as moving.
     fn body(self, name: &str) -> Result<Body, Error> {
         if self.t1.is_empty() {
             return Ok(Body::deformable(Mesh::new(name, Positions::F32(self.t0), self.faces)?));
@@ -152,12 +159,12 @@ impl Builder {
     }
 }
 
-/// The smallest whole number whose cube is at least `n`.
+/// Returns the smallest whole number whose cube is at least `n`.
 fn cube_root_up(n: usize) -> usize {
     (1..).find(|k: &usize| k.saturating_pow(3) >= n).unwrap_or(1)
 }
 
-/// The whole number nearest to the square root of `x`, at least 1.
+/// Returns the whole number nearest to the square root of `x`, at least 1.
 fn square_root(x: f64) -> u32 {
     (x.sqrt() + 0.5).floor().clamp(1.0, 1e9) as u32
 }

@@ -1,5 +1,5 @@
-//! Hundreds of balls that bounce off each other, off five blocks and off the sides of a box: a stand-in for UNC's
-//! n-body.
+//! Hundreds of balls that bounce off each other, off five blocks and off the sides of a box: a
+//! substitute for UNC's n-body.
 
 use super::Rng;
 use super::animation::Act;
@@ -18,7 +18,7 @@ const RADII: [f64; 2] = [0.22, 0.37];
 /// Sides of the box for a full number of balls.
 const BOX: [f64; 3] = [9.0, 9.0, 10.0];
 const FULL: f64 = 300.0;
-/// Where blocks stand in the box and how large they are, as parts of its sides: from, to.
+/// Place and size of the blocks in the box, as fractions of its sides: from, to.
 const BLOCKS: [[[f64; 2]; 3]; 5] = [
     [[0.25, 0.70], [0.25, 0.70], [0.0, 0.3]],
     [[0.05, 0.35], [0.05, 0.35], [0.0, 0.6]],
@@ -26,17 +26,19 @@ const BLOCKS: [[[f64; 2]; 3]; 5] = [
     [[0.72, 0.92], [0.05, 0.25], [0.0, 0.7]],
     [[0.78, 0.88], [0.78, 0.88], [0.0, 0.5]],
 ];
-/// Cells along the edge of a block, at most.
+/// Most cells along the edge of a block.
 const CELLS: u32 = 6;
-/// Speed of the largest ball, a frame; others are faster as they are lighter, and a few much faster.
+/// Speed of the largest ball per frame; lighter balls are faster, and a few much faster.
 const SPEED: f64 = 0.2;
-/// Part of its own speed that a ball regains in a frame, whatever it lost.
+/// Fraction of its own speed that a ball regains in a frame after any loss.
 const DRIVE: f64 = 0.5;
-/// Part of the speed of approach that balls keep when they meet: little, so that many touch for a while, as UNC's do.
+/// Fraction of the speed of approach that balls keep when they meet: little, so that many touch for
+/// a while, as UNC's do.
 const BOUNCE: f64 = 0.2;
-/// Substeps of a frame: few, so that a ball is well into another before they bounce, as in UNC's.
+/// Substeps per frame: few, so that a ball is well into another before they bounce, as in UNC's
+/// scene.
 const SUBSTEPS: u32 = 2;
-/// Tries to place a ball where none is yet; then it may overlap another.
+/// Tries to place a ball in a free place; after them it may overlap another.
 const TRIES: u32 = 64;
 
 struct Ball {
@@ -59,7 +61,7 @@ pub(super) struct NBody {
 }
 
 impl NBody {
-    /// Balls of 512 triangles, fewer where there are few, and blocks of up to 432.
+    /// Makes balls of 512 triangles, or less for few triangles, and blocks of up to 432.
     pub fn new(triangles: usize, seed: u64) -> NBody {
         let mut frequency = 8;
         while frequency > 1 && triangles < 60 * 8 * frequency * frequency {
@@ -90,7 +92,7 @@ impl NBody {
         bodies
     }
 
-    /// Balls at random, clear of each other and of the blocks if that is soon found.
+    /// Places balls at random, clear of each other and of the blocks if such a place is found soon.
     fn place(&mut self, count: usize, rng: &mut Rng) {
         for _ in 0..count {
             let radius = RADII[0] + (RADII[1] - RADII[0]) * rng.unit();
@@ -174,7 +176,8 @@ impl NBody {
         self.meet();
     }
 
-    /// Balls that overlap and approach exchange momentum and lose most of their approach; found by a sweep along x.
+    /// Collides balls that overlap and approach: they exchange momentum and lose most of their
+    /// approach. A sweep along x finds them.
     fn meet(&mut self) {
         let balls = &mut self.balls;
         let low = |ball: &Ball| ball.centre[0] - ball.radius;
@@ -221,13 +224,13 @@ impl Act for NBody {
     }
 }
 
-/// From the nearest point of a block to `p`; nothing where `p` is in the block.
+/// Returns the vector from the nearest point of a block to `p`; `None` if `p` is in the block.
 fn beyond(block: &[[f64; 2]; 3], p: V) -> Option<V> {
     let out = Vec3([0, 1, 2].map(|k| p[k] - p[k].clamp(block[k][0], block[k][1])));
     (out.dot(out) > 0.0).then_some(out)
 }
 
-/// The cube root by Newton's method: the same on every machine, unlike the library's.
+/// Returns the cube root by Newton's method: the same on every machine, unlike the library's.
 fn cube_root(x: f64) -> f64 {
     (0..64).fold(x.max(1.0), |root, _| (2.0 * root + x / (root * root)) / 3.0)
 }

@@ -1,4 +1,5 @@
-//! A wide dress on a figure that turns and sways, its train on the floor: a stand-in for UNC's Princess.
+//! A wide dress on a figure that turns and sways, its train on the floor: a substitute for UNC's
+//! Princess.
 
 use super::sphere::sphere;
 use super::turn::{around, ring, wave};
@@ -9,7 +10,8 @@ use nearmiss_kernels::math::Vec3;
 /// Frames after which the dress has gathered.
 pub(super) const OPENING: u64 = 60;
 
-/// The figure: an ellipsoid that stands on the floor, its radius across and along, and its centre's height.
+/// The figure: an ellipsoid that stands on the floor, its radius across and along, and the height
+/// of its centre.
 const FIGURE: [f64; 2] = [0.45, 1.5];
 const CENTRE: f64 = 1.6;
 /// Height and radius of the neckline, from which the dress hangs.
@@ -18,10 +20,10 @@ const NECK: [f64; 2] = [2.6, 0.42];
 const LENGTH: f64 = 3.0;
 /// Radius gained down to the hem.
 const FLARE: f64 = 1.7;
-/// Folds around the dress, and how far they stand out at the hem.
+/// Number of folds around the dress, and how far they stand out at the hem.
 const FOLDS: f64 = 18.0;
 const STAND: f64 = 0.15;
-/// How far vertices are shaken, and where the dress stops before the figure, in cells.
+/// Random shift of vertices, and the distance from the figure at which they stop, in cells.
 const SHAKE: f64 = 0.03;
 const MARGIN: f64 = 0.35;
 const FABRIC: Fabric = Fabric { stretch: 0.0, shear: 0.01, bend: 0.5 };

@@ -4,11 +4,12 @@ use super::{Builder, Rng, cube_root_up, room};
 use nearmiss::Error;
 use nearmiss::mesh::Body;
 
-/// Exactly `n` random triangles in the unit cube, no two with a common vertex; still, or each corner moving on its
-/// own. Their size falls with the cube root of `n`, so that each meets a few others, however many there are.
+/// Makes exactly `n` random triangles in the unit cube, no two with a common vertex. They are
+/// still, or each corner moves on its own. Their size decreases with the cube root of `n`, so that
+/// each meets a few others for any `n`.
 ///
 /// # Errors
-/// More than [`super::MAX_TRIANGLES`].
+/// If there are more than [`super::MAX_TRIANGLES`].
 pub fn soup(n: usize, seed: u64, moving: bool) -> Result<Body, Error> {
     let name = if moving { "soup-moving" } else { "soup" };
     room(name, n as u64)?;

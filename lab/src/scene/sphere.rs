@@ -1,14 +1,14 @@
-//! A sphere of triangles: an octahedron, its sides cut into small triangles, pushed out to radius 1.
+//! A sphere of triangles: an octahedron with subdivided sides, projected to radius 1.
 
 use std::collections::HashMap;
 
-/// Points on the unit sphere and triangles (outward, `8 frequency^2` of them) with common vertices.
+/// Points on the unit sphere, and `8 frequency^2` outward triangles with common vertices.
 pub(super) struct Sphere {
     pub points: Vec<[f64; 3]>,
     pub faces: Vec<[u32; 3]>,
 }
 
-/// The sphere whose octahedron has `frequency` small edges along each edge.
+/// Makes the sphere whose octahedron has `frequency` small edges along each edge.
 pub(super) fn sphere(frequency: u32) -> Sphere {
     let n = frequency as i64;
     let mut sphere = Sphere { points: Vec::new(), faces: Vec::new() };
@@ -29,7 +29,8 @@ pub(super) fn sphere(frequency: u32) -> Sphere {
             }
             sphere.faces.push(face);
         };
-        // Points (i, j, k) with i + j + k = n: one triangle above each (i, j) of n - 1, one below each of n - 2.
+        // Points (i, j, k) with i + j + k = n: one triangle above each (i, j) of n - 1, one below
+        // each of n - 2.
         for i in 0..n {
             for j in 0..n - i {
                 let k = n - 1 - i - j;

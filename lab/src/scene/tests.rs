@@ -3,7 +3,8 @@
 use super::*;
 use nearmiss::mesh::{Topology, check};
 
-/// Name, triangles and fingerprint for 1000 triangles and seed 7. From golden.py, a second implementation in Python.
+/// Name, triangles and fingerprint for 1000 triangles and seed 7. They come from golden.py, a
+/// second implementation in Python.
 const GOLDEN: [(&str, usize, u64); 8] = [
     ("balls", 992, 0xd722cb011318a040),
     ("draped", 1010, 0x080dfe1ea77463fa),
@@ -85,7 +86,8 @@ fn a_sphere_is_closed_and_faces_outward() {
 
 #[test]
 fn the_generator_is_splitmix64() {
-    // The first outputs for seed 1234567, from the reference implementation's published check values.
+    // The first outputs for seed 1234567, from the reference implementation's published check
+    // values.
     let mut rng = Rng::new(1_234_567);
     let expected = [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423];
     assert_eq!([(); 3].map(|()| rng.bits()), expected);
@@ -118,8 +120,9 @@ fn soups_and_balls_meet_but_not_all() {
     }
 }
 
-/// Pairs of triangles without a common vertex of which an edge of one passes through the other, in doubles: all that
-/// meet, but for coplanar ones and touches, which the scenes asked have not. Quadratic.
+/// Returns how many pairs of triangles without a common vertex have an edge of one through the
+/// other, in doubles. These are all that meet, except coplanar and touching ones, which the tested
+/// scenes lack. Quadratic.
 fn meeting(mesh: &Mesh) -> u64 {
     let points = mesh.positions().to_f64();
     let triangles: Vec<[[f64; 3]; 3]> = mesh.faces().iter().map(|f| f.map(|i| points[i as usize])).collect();
@@ -154,7 +157,7 @@ fn pierces(p: [f64; 3], q: [f64; 3], t: &[[f64; 3]; 3]) -> bool {
         && (sides.iter().all(|v| *v > 0.0) || sides.iter().all(|v| *v < 0.0))
 }
 
-/// Six times the signed volume of a tetrahedron.
+/// Returns six times the signed volume of a tetrahedron.
 fn volume(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> f64 {
     let from_d = |p: [f64; 3]| [p[0] - d[0], p[1] - d[1], p[2] - d[2]];
     let (a, b, c) = (from_d(a), from_d(b), from_d(c));
@@ -162,7 +165,7 @@ fn volume(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> f64 {
         + a[2] * (b[0] * c[1] - b[1] * c[0])
 }
 
-/// A seed makes another scene of those that use chance, and the same of all others.
+/// A seed changes the random scenes, and no other.
 #[test]
 fn the_seeded_scenes_are_those_that_use_chance() {
     for name in NAMES {

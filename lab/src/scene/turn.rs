@@ -1,14 +1,15 @@
-//! Circles and waves by `+ - * /` alone: the same on every machine; and the cloth that hangs around.
+//! Circles and waves by `+ - * /` alone, the same on every machine; and cloth around an axis.
 
 use super::known::at_least_one;
 use super::square_root;
 
-/// Cosine and sine of so many whole turns: Taylor's series of an eighth of the angle, then doubled three times. Off by
-/// less than 1e-14.
+/// Returns cosine and sine of a number of turns: the Taylor series of an eighth of the angle,
+/// doubled three times. The error is below 1e-14.
 pub(super) fn circle(turns: f64) -> [f64; 2] {
     let x = (turns - (turns + 0.5).floor()) * (std::f64::consts::TAU / 8.0);
     let square = x * x;
-    // 1 - x^2/(1 2) (1 - x^2/(3 4) (...)) and x (1 - x^2/(2 3) (1 - ...)): |x| <= 0.4, the first term left out is 1e-17.
+    // 1 - x^2/(1 2) (1 - x^2/(3 4) (...)) and x (1 - x^2/(2 3) (1 - ...)): |x| <= 0.4, and the
+    // first omitted term is 1e-17.
     let series = |first: f64| {
         (0..6).rev().fold(1.0, |sum, k| {
             let n = first + 2.0 * f64::from(k);
@@ -22,21 +23,22 @@ pub(super) fn circle(turns: f64) -> [f64; 2] {
     [c, s]
 }
 
-/// A wave of period 1 and height 1 made of two parabolas: nearly a sine, the same on every machine.
+/// Returns a wave of period 1 and height 1 made of two parabolas: nearly a sine, the same on every
+/// machine.
 pub(super) fn wave(x: f64) -> f64 {
     let t = x - (x + 0.5).floor();
     8.0 * t * (1.0 - 2.0 * t.abs())
 }
 
-/// How many rows and columns of a cloth around an axis make about so many cells, each about square where the cloth is
-/// half as wide as at its hem.
+/// Returns the rows and columns of a cloth around an axis with about `cells` cells. Cells are about
+/// square at half the width of the hem.
 pub(super) fn around(cells: f64) -> [u32; 2] {
     let rows = square_root(cells.max(1.0) / 2.5);
     [rows, at_least_one(cells / f64::from(rows)).max(3)]
 }
 
-/// A cloth around the vertical axis, row by row: `place` says of a part of the way down and a direction around which
-/// radius and which height it has there, and how far off the vertex is shaken.
+/// Makes a cloth around the vertical axis, row by row. `place` takes a fraction of the way down and
+/// a direction around. It returns radius and height there, and the random shift of the vertex.
 pub(super) fn ring(
     [rows, columns]: [u32; 2],
     mut place: impl FnMut(f64, f64) -> ([f64; 2], [f64; 3]),

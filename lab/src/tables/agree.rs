@@ -1,26 +1,26 @@
-//! Do all ways of asking one thing give one answer?
+//! Checks that all ways to run one query give one answer.
 
 use super::measure::Cell;
 use nearmiss::error::Error;
 use nearmiss::query::Solver;
 
-/// Frames of each cell whose contacts differ from those of the first cell of the same motion. Volumes and walks may not
-/// change the answer of a solver that is never wrong; one that can be may differ where a volume keeps from it a pair that
-/// it would have got wrong.
+/// Returns each cell's frames whose contacts differ from those of the first cell with the same
+/// motion. Volumes and walks must not change the answer of an exact solver. A solver that can err
+/// may differ, if a volume excludes a pair that it would have got wrong.
 ///
 /// # Errors
-/// [`Error::Bug`] naming the first cell of an exact solver that differs, and its frame.
+/// [`Error::Bug`] with the first cell of an exact solver that differs, and its frame.
 pub fn agree(scene: &str, cells: &[Cell]) -> Result<Vec<usize>, Error> {
     let mut differing = Vec::new();
     for cell in cells {
-        // The cell itself is among them.
+        // The cell itself is one of them.
         let first = cells.iter().find(|other| other.way.moves == cell.way.moves).unwrap_or(cell);
         let differs = |at: &usize| first.hashes.get(*at) != cell.hashes.get(*at);
         let frames: Vec<usize> = (0..first.hashes.len().max(cell.hashes.len())).filter(differs).collect();
         if let (Solver::Exact, Some(frame)) = (cell.solver, frames.first()) {
             return Err(Error::Bug {
                 what: format!(
-                    "{scene}, {}, frame {frame}: other contacts than {}, though both are exact",
+                    "{scene}, {}, frame {frame}: its contacts differ from those of {}, though both are exact",
                     cell.way, first.way
                 ),
             });
@@ -61,7 +61,7 @@ mod tests {
     fn a_wrong_exact_answer_is_named() {
         let cells = [cell(false, false, &[1, 2, 3]), cell(false, true, &[1, 9, 3])];
         let error = agree("flamenco", &cells).expect_err("a planted fault").to_string();
-        for part in ["flamenco", "discrete AABB, front", "frame 1", "than discrete AABB,"] {
+        for part in ["flamenco", "discrete AABB, front", "frame 1", "those of discrete AABB,"] {
             assert!(error.contains(part), "{part}: {error}");
         }
     }

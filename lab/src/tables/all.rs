@@ -11,12 +11,12 @@ use nearmiss::error::Error;
 use nearmiss::words::counted;
 use serde::Serialize;
 
-/// The figures that were asked for; those that were not have no rows.
+/// The requested figures; the others have no rows.
 #[derive(Debug, Serialize)]
 pub struct Figures {
     /// Our machine.
     pub device: String,
-    /// Work queues of which size, or `fastest`.
+    /// Size of the work queues, or `fastest`.
     pub profile: &'static str,
     /// The thesis's machine.
     pub theirs: &'static str,
@@ -24,18 +24,18 @@ pub struct Figures {
     pub figure_6_12: Vec<Figure612>,
     /// Frames.
     pub figure_6_13: Vec<Figure613>,
-    /// Shares.
+    /// Figure 6.14: shares of the stages.
     pub figure_6_14: Vec<Figure614>,
-    /// What a front saves.
+    /// Savings of a front.
     pub front: Vec<FrontRow>,
     /// Scenes of many bodies.
     pub bodies: Vec<BodiesRow>,
-    /// Sizes, on one device and several.
+    /// Sizes, on one device and on several.
     pub scale: Vec<ScaleRow>,
 }
 
 impl Figures {
-    /// No figures yet.
+    /// Returns no figures.
     pub fn new(device: String, profile: &'static str) -> Figures {
         let (figure_6_12, figure_6_13, figure_6_14) = Default::default();
         let (front, bodies, scale) = Default::default();
@@ -52,7 +52,7 @@ impl Figures {
         }
     }
 
-    /// For people.
+    /// Returns the figures as text, for a terminal.
     pub fn text(&self) -> String {
         let figures = [
             text(&self.figure_6_12),
@@ -72,14 +72,14 @@ impl Figures {
         all
     }
 
-    /// The machine, and the work queues where there are some.
+    /// Returns the machine, and the work queues if they have a size.
     fn machine(&self) -> String {
         let queues =
             if self.profile == "fastest" { String::new() } else { format!(", work queues {}", self.profile) };
         format!("{}{queues}", self.device)
     }
 
-    /// What a reader of the figures must know.
+    /// Returns the remarks that a reader of the figures needs.
     fn remarks(&self) -> Vec<String> {
         let of_612 = self.figure_6_12.iter().map(|r| (&r.scene, r.triangles, r.their_triangles));
         let of_613 = self.figure_6_13.iter().map(|r| (&r.scene, r.triangles, r.their_triangles));
@@ -87,7 +87,7 @@ impl Figures {
         for (scene, ours, theirs) in of_612.chain(of_613) {
             let Some(theirs) = theirs.filter(|_| !is_like(scene, ours)) else { continue };
             let remark = format!(
-                "{scene}: ours has {ours} triangles and theirs {theirs}; its ratios compare different scenes."
+                "{scene}: ours has {ours} triangles and theirs {theirs}; the ratios compare different scenes."
             );
             if !remarks.contains(&remark) {
                 remarks.push(remark);
@@ -96,24 +96,24 @@ impl Figures {
         let differing: usize = self.figure_6_13.iter().map(|row| row.differing).sum();
         if differing > 0 {
             remarks.push(format!(
-                "{} between volumes or walks: their solver can err, and does so on other candidates.",
+                "{} between volumes or walks: their solver can err, and errs on other candidates.",
                 counted(differing as u64, "frame differs", "frames differ")
             ));
         }
         let reruns: u64 = self.figure_6_13.iter().map(|row| row.reruns).sum();
         if reruns > 0 {
             remarks.push(format!(
-                "{} again for want of room: times of such frames are too long.",
+                "{} again because a list was too short: times of such frames are too long.",
                 counted(reruns, "run was done", "runs were done")
             ));
         }
         remarks
     }
 
-    /// `figure-6.12.csv`, `figure-6.12.svg` and so on: names of files, and their bytes.
+    /// Returns `figure-6.12.csv`, `figure-6.12.svg` and so on: file names and bytes.
     ///
     /// # Errors
-    /// Those of drawing.
+    /// Drawing errors.
     pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>, Error> {
         let mut files = Vec::new();
         let mut both = |name: &str, rows: Result<Vec<u8>, Error>, svg: Result<String, Error>| {
@@ -167,7 +167,8 @@ impl Figures {
     }
 }
 
-/// A chart a scene, motion and volume; ways without a front are what the others are drawn against.
+/// Returns a chart per scene, motion and volume; rows without a front are the reference of the
+/// others.
 fn charts(rows: &[FrontRow]) -> Vec<Chart> {
     let fronts: Vec<&FrontRow> = rows.iter().filter(|row| row.front).collect();
     let title = |row: &FrontRow| format!("{}, {}", row.scene, label(row.motion, row.bv, false));
@@ -196,7 +197,7 @@ fn is_like(scene: &str, triangles: usize) -> bool {
     Paper::new(scene, triangles, String::new(), "").is_like()
 }
 
-/// A panel's title, which says so where the thesis's scene has another size.
+/// Returns a panel's title, with the thesis's size if it differs.
 fn titled(scene: &str, triangles: usize, theirs: Option<usize>) -> String {
     match theirs {
         Some(theirs) if !is_like(scene, triangles) => {
@@ -215,7 +216,7 @@ fn stack(row: &Figure614) -> Stack {
     }
 }
 
-/// A panel a scene; a scene's rows stand together.
+/// Returns one panel per scene; a scene's rows are adjacent.
 fn panels<T>(rows: &[T], title: fn(&T) -> String, bar: fn(&T) -> Bar) -> Vec<Panel> {
     let panel = |rows: &[T]| Panel {
         title: rows.first().map(title).unwrap_or_default(),
@@ -224,7 +225,7 @@ fn panels<T>(rows: &[T], title: fn(&T) -> String, bar: fn(&T) -> Bar) -> Vec<Pan
     rows.chunk_by(|a, b| title(a) == title(b)).map(panel).collect()
 }
 
-/// Rows with a head.
+/// Returns rows with a header, as CSV.
 ///
 /// # Errors
 /// [`Error::Bug`] for rows that a table cannot hold.

@@ -1,4 +1,4 @@
-//! What scenes of many bodies cost: a frame in one submission, and of many worlds each by itself beside it.
+//! Cost of scenes of many bodies: a frame in one submission, compared with many worlds one by one.
 
 use super::text::{Printed, digits};
 use crate::OneQuery;
@@ -11,46 +11,46 @@ use nearmiss::query::{Query, QueryKind};
 use nearmiss::scene::{BodyId, BodyKind, Motion, Scene};
 use serde::Serialize;
 
-/// A scene asked in one way.
+/// A scene with one query.
 #[derive(Clone, Debug, Serialize)]
 pub struct BodiesRow {
     /// The scene.
     pub scene: String,
     /// The machine.
     pub device: String,
-    /// What was asked.
+    /// Kind of the query.
     pub motion: QueryKind,
-    /// Bodies, and the triangles of them all.
+    /// Number of bodies.
     pub bodies: usize,
-    /// Triangles.
+    /// Triangles of all bodies.
     pub triangles: usize,
-    /// Those of bodies that move.
+    /// Triangles of moving bodies.
     pub moving: usize,
-    /// Kernels launched a frame.
+    /// Kernel launches per frame.
     pub launches: u64,
-    /// Device memory held after the last frame, bytes.
+    /// Device memory held after the last frame, in bytes.
     pub bytes: u64,
-    /// Mean milliseconds a frame: placing what moves.
+    /// Mean milliseconds per frame: placing moving bodies.
     pub place_ms: f64,
-    /// From positions to contacts.
+    /// Mean milliseconds per frame: from positions to contacts.
     pub frame_ms: f64,
-    /// What the caller waits for.
+    /// Mean milliseconds per frame that the caller waits.
     pub wall_ms: f64,
-    /// Contacts of all frames.
+    /// Number of contacts of all frames.
     pub contacts: u64,
     /// One hash over those of all frames.
     pub hash: String,
-    /// Of worlds: milliseconds that the caller waits for all of them, asked one by one.
+    /// For worlds: milliseconds that the caller waits for all of them, one by one.
     pub one_by_one_ms: Option<f64>,
 }
 
-/// Worlds that are asked one by one, to know how long all of them take.
+/// Number of worlds that run one by one, from which the time of all is estimated.
 const ASKED: usize = 20;
 
-/// Asks a scene's steps, twice; the second time counts.
+/// Runs a scene's steps twice; the second run is measured.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn bodies(
     device: &Device,
     name: &str,
@@ -99,7 +99,8 @@ pub fn bodies(
     })
 }
 
-/// How long a caller waits who asks world after world, of a scene of more than one; each is warm, as the whole is.
+/// Returns the time of a caller who runs world after world, for a scene of more than one. Each is
+/// warm, as the whole scene is.
 fn one_by_one(
     device: &Device,
     all: &Bodies,
@@ -134,7 +135,7 @@ fn one_by_one(
 
 impl Printed for BodiesRow {
     const CAPTION: &'static str =
-        "Scenes of many bodies, a frame in one submission; worlds one by one beside it";
+        "Scenes of many bodies, a frame in one submission, compared with worlds one by one";
     const HEADS: &'static [&'static str] = &[
         "scene",
         "motion",

@@ -1,4 +1,4 @@
-//! Construction and refit alone, for figure 6.12: no frame is asked.
+//! Construction and refit alone, for figure 6.12: no whole frame runs.
 
 use super::frames::Frames;
 use super::measure::mean;
@@ -9,27 +9,27 @@ use nearmiss::error::Error;
 use nearmiss::pipeline::{Stage, Stages};
 use nearmiss::query::{Bv, Traversal};
 
-/// Milliseconds of the stages that make and dress a tree, means over all frames.
+/// Milliseconds of the stages that build a tree and fit its volumes, means over all frames.
 #[derive(Clone, Copy, Debug)]
 pub struct Built {
     /// The volume.
     pub bv: Bv,
-    /// `construct`, `fit` and `refit`; the rest is zero.
+    /// `construct`, `fit` and `refit`; the others are zero.
     pub mean: Stages,
 }
 
-/// Builds a tree at every frame, and dresses the first frame's tree anew at every frame. Each frame's work runs twice;
-/// the second time counts.
+/// Builds a tree at every frame, and refits the first frame's tree at every frame. Each frame's
+/// work runs twice; the second run is measured.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn build(device: &Device, frames: &Frames, bv: Bv, walk: Option<Traversal>) -> Result<Built, Error> {
     let bodies = frames.bodies(false)?;
     let query = Way { moves: false, bv, front: false }.query(walk);
     let mut detector = OneQuery::new(device.clone(), vec![bodies[0].clone()], query)?;
     let mut all = vec![Stages::default(); bodies.len()];
     let last = |ms: Vec<f64>| ms.last().copied().unwrap_or(0.0);
-    // First all that reads the first frame's tree, then what replaces it.
+    // First the stages on the first frame's tree, then those that replace it.
     for (body, stages) in bodies.iter().zip(&mut all) {
         detector.move_to(0, body.clone())?;
         stages.fit = last(detector.repeat_stage(Stage::Fit, 2)?);

@@ -1,4 +1,4 @@
-//! The figures as rows: ours beside theirs.
+//! The figures as rows: ours compared with theirs.
 
 use super::build::Built;
 use super::measure::Cell;
@@ -6,25 +6,25 @@ use super::paper_reference;
 use nearmiss::query::{Bv, Solver};
 use serde::Serialize;
 
-/// What all rows of a scene share.
+/// Columns that all rows of a scene share.
 #[derive(Clone, Debug)]
 pub struct Paper {
     /// Our name of the scene.
     pub scene: String,
-    /// The thesis's name of it; empty where it has none.
+    /// The thesis's name of it; empty if the thesis lacks it.
     pub model: &'static str,
-    /// Triangles of ours.
+    /// Our number of triangles.
     pub triangles: usize,
-    /// Triangles of the thesis's.
+    /// The thesis's number of triangles.
     pub their_triangles: Option<usize>,
     /// The machine.
     pub device: String,
-    /// Work queues of which size, or `fastest`.
+    /// Size of the work queues, or `fastest`.
     pub profile: &'static str,
 }
 
 impl Paper {
-    /// Of a scene on a machine.
+    /// Returns the columns of a scene on a machine.
     pub fn new(scene: &str, triangles: usize, device: String, profile: &'static str) -> Paper {
         let theirs = paper_reference::of(scene);
         Paper {
@@ -37,7 +37,8 @@ impl Paper {
         }
     }
 
-    /// Whether both have about as many triangles, within a tenth: only then does a ratio compare machines and programs.
+    /// Returns whether both have about as many triangles, within a tenth: only then does a ratio
+    /// compare machines and programs.
     pub fn is_like(&self) -> bool {
         self.their_triangles.is_none_or(|theirs| 10 * self.triangles.abs_diff(theirs) <= theirs)
     }
@@ -55,15 +56,15 @@ pub struct Figure612 {
     /// `construct` or `refit`.
     pub stage: &'static str,
     pub bv: &'static str,
-    /// Frames that the mean is over.
+    /// Number of frames in the mean.
     pub frames: usize,
     pub ours_ms: f64,
     pub theirs_ms: Option<f64>,
-    /// Ours over theirs.
+    /// Ratio of ours to theirs.
     pub ratio: Option<f64>,
 }
 
-/// A row of figure 6.13: a whole frame asked in one way. Milliseconds.
+/// A row of figure 6.13: a whole frame run in one way. Milliseconds.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figure613 {
     pub scene: String,
@@ -76,25 +77,25 @@ pub struct Figure613 {
     pub bv: &'static str,
     pub front: bool,
     pub solver: Solver,
-    /// Frames, or steps, that the mean is over.
+    /// Number of frames, or steps, in the mean.
     pub frames: usize,
     pub ours_ms: f64,
     pub theirs_ms: Option<f64>,
-    /// Ours over theirs.
+    /// Ratio of ours to theirs.
     pub ratio: Option<f64>,
     pub contacts_a_frame: f64,
     pub node_tests_a_frame: f64,
     pub triangle_pairs_a_frame: f64,
-    /// Of all frames' contacts, hexadecimal: the same for all rows of one scene and motion.
+    /// Hash of all frames' contacts, hexadecimal: the same for all rows of one scene and motion.
     pub hash: String,
     /// Frames whose contacts differ from those of the first row of the motion.
     pub differing: usize,
-    /// Frames that ran again for want of room: their times are too long.
+    /// Frames that reran because a list was too short: their times are too long.
     pub reruns: u64,
     pub bytes: u64,
 }
 
-/// A row of figure 6.14: where a frame's time goes. Percent of the four together.
+/// A row of figure 6.14: the stages' shares of a frame's time, in percent of the four together.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figure614 {
     pub scene: String,
@@ -111,7 +112,7 @@ pub struct Figure614 {
     pub traverse: f64,
     pub balance: f64,
     pub triangle_tests: f64,
-    /// The four together, milliseconds.
+    /// The four together, in milliseconds.
     pub ms: f64,
 }
 
@@ -119,8 +120,9 @@ fn ratio(ours: f64, theirs: Option<f64>) -> Option<f64> {
     theirs.map(|theirs| ours / theirs)
 }
 
-/// Figure 6.12 of one scene. A refit is of all volumes, the leaves' too. A construction ends with a tree in boxes; in
-/// another volume, as the thesis has it, it is that and then a refit in the other volume.
+/// Returns figure 6.12 of one scene. A refit covers all volumes, the leaves' too. A construction
+/// builds a tree in boxes. For another volume it is that plus a refit in the other volume, as in
+/// the thesis.
 pub fn figure_612(paper: &Paper, frames: usize, built: &[Built]) -> Vec<Figure612> {
     let theirs = paper_reference::of(&paper.scene);
     let refit = |b: &Built| b.mean.fit + b.mean.refit;
@@ -153,7 +155,7 @@ pub fn figure_612(paper: &Paper, frames: usize, built: &[Built]) -> Vec<Figure61
     rows
 }
 
-/// Figure 6.13 of one scene. `differing` as [`super::agree`] gives it.
+/// Returns figure 6.13 of one scene; `differing` comes from [`super::agree`].
 pub fn figure_613(paper: &Paper, cells: &[Cell], differing: &[usize]) -> Vec<Figure613> {
     let theirs = paper_reference::of(&paper.scene);
     let row = |(cell, &differing): (&Cell, &usize)| {
@@ -185,7 +187,7 @@ pub fn figure_613(paper: &Paper, cells: &[Cell], differing: &[usize]) -> Vec<Fig
     cells.iter().zip(differing).map(row).collect()
 }
 
-/// Figure 6.14 of one scene.
+/// Returns figure 6.14 of one scene.
 pub fn figure_614(paper: &Paper, cells: &[Cell]) -> Vec<Figure614> {
     let row = |cell: &Cell| {
         let m = &cell.mean;

@@ -1,4 +1,4 @@
-//! Where frames come from: a generated animation, or files.
+//! Sources of frames: a generated animation, or files.
 
 use crate::scene;
 use nearmiss::error::Error;
@@ -8,7 +8,7 @@ use nearmiss::words::counted;
 use nearmiss_io::MeshFile;
 use std::path::PathBuf;
 
-/// The scenes that stand in for the thesis's, with the triangles that it names.
+/// The substitutes of the thesis's scenes, with the thesis's numbers of triangles.
 pub const SCENES: [(&str, usize); 4] =
     [("flamenco", 49_000), ("princess", 40_000), ("cloth-ball", 92_230), ("n-body", 146_480)];
 
@@ -21,10 +21,11 @@ pub struct Frames {
 }
 
 impl Frames {
-    /// What is asked in turn: every frame, or, of what moves, every pair of consecutive ones.
+    /// Returns the bodies to test in turn: every frame or, if they move, every pair of consecutive
+    /// frames.
     ///
     /// # Errors
-    /// [`Error::Input`] where two frames are not of one mesh.
+    /// [`Error::Input`] if two frames have different meshes.
     pub fn bodies(&self, moves: bool) -> Result<Vec<Body>, Error> {
         if !moves {
             return Ok(self.meshes.iter().cloned().map(Body::deformable).collect());
@@ -32,7 +33,7 @@ impl Frames {
         self.meshes.windows(2).map(|pair| Body::moving(pair[0].clone(), pair[1].clone())).collect()
     }
 
-    /// Triangles of the mesh.
+    /// Returns the number of triangles of the mesh.
     pub fn triangles(&self) -> usize {
         self.meshes.first().map_or(0, Mesh::face_count)
     }
@@ -45,23 +46,23 @@ impl Frames {
                 advice: "a step needs two: give more files after --mesh, or a larger --frames".into(),
             });
         }
-        // Every pair is checked, so that no measurement ends halfway.
+        // Every pair is checked, so that no measurement fails halfway.
         frames.bodies(true)?;
         Ok(frames)
     }
 }
 
-/// `count` frames of an animation, one after the other, from where it is what it stands in for: before that, cloth falls
-/// and gathers. Cost: those frames too are computed.
+/// Returns `count` frames of an animation, one after the other, from its opening on: before, cloth
+/// falls and gathers. Cost: the earlier frames are computed too.
 ///
 /// # Errors
-/// Those of the scene; [`Error::InvalidArgument`] for fewer than two frames.
+/// Errors of the scene; [`Error::InvalidArgument`] for fewer than two frames.
 pub fn frames(name: &str, triangles: usize, seed: u64, count: usize) -> Result<Frames, Error> {
     let mut animation = scene::animation(name, triangles, seed)?;
     animation.advance(animation.opening())?;
     let mut meshes = vec![animation.mesh()?];
     let first = size_of_val(meshes[0].faces()) + meshes[0].vertex_count() * size_of::<[f32; 3]>();
-    // Each frame is kept, and handed on as a still body and as both ends of a step.
+    // Each frame is kept, and copied as a still body and as both ends of a step.
     memory::require(&format!("{count} frames of {name}"), (first as u64).saturating_mul(4 * count as u64))?;
     while meshes.len() < count {
         animation.advance(1)?;
@@ -70,10 +71,11 @@ pub fn frames(name: &str, triangles: usize, seed: u64, count: usize) -> Result<F
     Frames::new(name, meshes)
 }
 
-/// Frames from files, in the order given.
+/// Reads frames from files, in the given order.
 ///
 /// # Errors
-/// Those of reading; [`Error::Input`] where two files are not frames of one mesh; [`Error::InvalidArgument`] for one file.
+/// Errors of reading; [`Error::Input`] if two files are not frames of one mesh;
+/// [`Error::InvalidArgument`] for one file.
 pub fn read(scene: &str, files: &[PathBuf]) -> Result<Frames, Error> {
     let mut read = files.iter().map(|file| MeshFile::read(file)).collect::<Result<Vec<_>, _>>()?;
     for at in 1..read.len() {

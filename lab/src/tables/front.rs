@@ -1,4 +1,5 @@
-//! What a front saves, by how far things move: two frames, and every part of the step between them.
+//! Savings of a front by the amount of motion: two frames, and every fraction of the step between
+//! them.
 
 use super::figures::Paper;
 use super::frames::Frames;
@@ -10,13 +11,13 @@ use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Query, QueueShape, Traversal};
 use serde::Serialize;
 
-/// Parts of the step.
+/// Fractions of the step.
 pub const PARTS: [f64; 9] =
     [0.0, 1.0 / 64.0, 1.0 / 32.0, 1.0 / 16.0, 1.0 / 8.0, 1.0 / 4.0, 1.0 / 2.0, 3.0 / 4.0, 1.0];
-/// Runs that a time is the mean of; one more warms up.
+/// Number of runs in a mean time, after one warm-up.
 const RUNS: usize = 3;
 
-/// What the frame after a part of the step cost in one way.
+/// Cost of the frame after a fraction of the step, in one way.
 #[derive(Clone, Debug, Serialize)]
 pub struct FrontRow {
     pub scene: String,
@@ -25,26 +26,27 @@ pub struct FrontRow {
     pub motion: &'static str,
     pub bv: &'static str,
     pub front: bool,
-    /// The part of the step, 0 to 1.
+    /// The fraction of the step, 0 to 1.
     pub part: f64,
     /// Overlap tests of two volumes.
     pub node_tests: u64,
-    /// Traversal with balancing, milliseconds.
+    /// Milliseconds of traversal with balancing.
     pub traverse_ms: f64,
-    /// The whole frame, milliseconds.
+    /// Milliseconds of the whole frame.
     pub frame_ms: f64,
-    /// Node tests over those of the same way without the front.
+    /// Node tests relative to those of the same way without the front.
     pub tests_ratio: f64,
-    /// The same of the traversal's time.
+    /// The same for the traversal's time.
     pub time_ratio: f64,
     pub hash: String,
 }
 
-/// Asks the first two frames' step, part by part, in every way of `ways`; those without a front come first. Without a
-/// front a frame knows nothing of the one before it; with one it starts where the unmoved first frame ended.
+/// Runs the step of the first two frames, fraction by fraction, in every way of `ways`; those
+/// without a front come first. Without a front a frame is independent of the one before. With one
+/// it starts at the front of the unmoved first frame.
 ///
 /// # Errors
-/// Those of the device; [`Error::Bug`] where two ways give an exact solver different contacts.
+/// Device errors; [`Error::Bug`] if two ways give an exact solver different contacts.
 pub fn front(
     paper: &Paper,
     device: &Device,
@@ -56,7 +58,7 @@ pub fn front(
     for &way in ways {
         let mut query = way.query(walk);
         if walk.is_none() && !way.front {
-            // The same kernels, from the roots: what differs is the front alone.
+            // The same kernels, from the roots: only the front differs.
             query = query.with_traversal(Traversal::Queue(QueueShape::native()));
         }
         for part in PARTS {
@@ -70,8 +72,10 @@ pub fn front(
                 row.tests_ratio = ratio(row.node_tests as f64, base.node_tests as f64);
                 row.time_ratio = ratio(row.traverse_ms, base.traverse_ms);
                 if base.hash != row.hash && query.solver() == nearmiss::query::Solver::Exact {
-                    let what =
-                        format!("{}, {way}, part {part} of a step: other contacts than without", paper.scene);
+                    let what = format!(
+                        "{}, {way}, part {part} of a step: contacts differ from those without a front",
+                        paper.scene
+                    );
                     return Err(Error::Bug { what });
                 }
             }
@@ -85,9 +89,9 @@ fn ratio(a: f64, b: f64) -> f64 {
     if b > 0.0 { a / b } else { 1.0 }
 }
 
-/// What is asked before, and after the part of the step.
+/// Returns the bodies before and after the fraction of the step.
 fn step(frames: &Frames, moves: bool, part: f64) -> Result<(Body, Body), Error> {
-    // Frames are at least two.
+    // There are at least two frames.
     let (t0, t1) = (&frames.meshes[0], &frames.meshes[1]);
     let moved = between(t0, t1, part)?;
     Ok(if moves {
@@ -97,7 +101,7 @@ fn step(frames: &Frames, moves: bool, part: f64) -> Result<(Body, Body), Error> 
     })
 }
 
-/// The first mesh, moved by a part of the way to the second; rounded to its precision.
+/// Returns the first mesh, moved by a fraction of the way to the second, rounded to its precision.
 fn between(t0: &Mesh, t1: &Mesh, part: f64) -> Result<Mesh, Error> {
     let (a, b) = (t0.positions().to_f64(), t1.positions().to_f64());
     let points = a.iter().zip(&b).map(|(a, b)| [0, 1, 2].map(|axis| a[axis] + part * (b[axis] - a[axis])));

@@ -1,4 +1,4 @@
-//! One cell: an animation asked in one way.
+//! One cell: an animation run in one way.
 
 use super::frames::Frames;
 use super::way::Way;
@@ -10,48 +10,48 @@ use nearmiss::mesh::Body;
 use nearmiss::pipeline::Stages;
 use nearmiss::query::{Query, Solver};
 
-/// What an animation asked in one way gave.
+/// Results of an animation run in one way.
 #[derive(Clone, Debug)]
 pub struct Cell {
-    /// How it was asked.
+    /// The way.
     pub way: Way,
-    /// The test that decided.
+    /// The solver.
     pub solver: Solver,
-    /// Each stage's mean over all frames, milliseconds.
+    /// Mean milliseconds of each stage over all frames.
     pub mean: Stages,
-    /// Contacts of all frames.
+    /// Number of contacts of all frames.
     pub contacts: u64,
     /// Overlap tests of two volumes, of all frames.
     pub node_tests: u64,
-    /// Triangle pairs that the volumes let through, of all frames.
+    /// Triangle pairs that passed the volumes, of all frames.
     pub triangle_pairs: u64,
-    /// Hash of every frame's contacts.
+    /// Hash of each frame's contacts.
     pub hashes: Vec<u64>,
-    /// Frames that ran again within themselves although the warm-up had grown the lists: their times are too long.
+    /// Frames with a rerun although the warm-up had grown the lists: their times are too long.
     pub reruns: u64,
-    /// Device memory held after the last frame, bytes.
+    /// Device memory held after the last frame, in bytes.
     pub bytes: u64,
 }
 
 impl Cell {
-    /// One hash over those of all frames.
+    /// Returns one hash over those of all frames.
     pub fn hash(&self) -> u64 {
         xxhash_rust::xxh3::xxh3_64(bytemuck::cast_slice(
             &self.hashes.iter().map(|h| h.to_le()).collect::<Vec<_>>(),
         ))
     }
 
-    /// Mean of a sum over all frames.
+    /// Returns the mean per frame of a sum over all frames.
     pub fn a_frame(&self, sum: u64) -> f64 {
         sum as f64 / self.hashes.len().max(1) as f64
     }
 }
 
-/// Asks all frames in one way, twice; the second time counts. The tree is that of the first frame, built anew at every
-/// `rebuild`th frame where that is asked for.
+/// Runs all frames in one way, twice; the second run is measured. The tree is that of the first
+/// frame. If `rebuild` is set, it is rebuilt at every `rebuild`th frame.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn measure(
     device: &Device,
     frames: &Frames,
@@ -89,7 +89,7 @@ pub fn measure(
     Ok(cell)
 }
 
-/// Asks every frame once, from the first on, with the first one's tree.
+/// Runs every frame once, from the first on, with the first one's tree.
 fn pass(
     detector: &mut OneQuery,
     bodies: &[Body],
@@ -106,7 +106,7 @@ fn pass(
     Ok(())
 }
 
-/// Each stage's mean.
+/// Returns each stage's mean.
 pub fn mean(all: &[Stages]) -> Stages {
     Stages::each(|stage| all.iter().map(stage).fold(0.0, |sum, ms| sum + ms) / all.len().max(1) as f64)
 }

@@ -1,7 +1,9 @@
-//! Figures 6.12 to 6.14 of the thesis, and what the thesis has not, measured here: what `nearmiss tables` prints, writes and draws.
+//! Figures 6.12 to 6.14 of the thesis, and further ones, measured here: the output of `nearmiss
+//! tables`.
 //!
-//! An animation is measured cell by cell: one motion, one volume, with or without a front. The tree is built at the first
-//! frame and refitted at all others, as the thesis does; a first pass over all frames warms up and is not counted.
+//! An animation is measured cell by cell: one motion, one volume, with or without a front. The tree
+//! is built at the first frame and refitted at all others, as in the thesis. A first pass over all
+//! frames is the warm-up and is not measured.
 
 mod agree;
 mod all;

@@ -18,7 +18,8 @@ pub struct Theirs {
     construct: [f64; 2],
     /// Refit: the same.
     refit: [f64; 2],
-    /// A frame, without and with the front: discrete axis-aligned, discrete oriented, continuous the same.
+    /// A frame, without and with the front: discrete axis-aligned, discrete oriented, then the same
+    /// continuous.
     frame: [[f64; 4]; 2],
 }
 
@@ -57,12 +58,12 @@ const ROWS: [Theirs; 4] = [
     },
 ];
 
-/// The thesis's row of a scene, where it has one.
+/// Returns the thesis's row of a scene, if it has one.
 pub fn of(scene: &str) -> Option<&'static Theirs> {
     ROWS.iter().find(|row| row.scene == scene)
 }
 
-/// The column of a volume that the thesis has.
+/// Returns the column of a volume, if the thesis has it.
 fn column(bv: Bv) -> Option<usize> {
     match bv {
         Bv::Aabb => Some(0),
@@ -72,17 +73,17 @@ fn column(bv: Bv) -> Option<usize> {
 }
 
 impl Theirs {
-    /// Milliseconds of a construction in a volume.
+    /// Returns the milliseconds of a construction in a volume.
     pub fn construct(&self, bv: Bv) -> Option<f64> {
         column(bv).map(|at| self.construct[at])
     }
 
-    /// Milliseconds of a refit.
+    /// Returns the milliseconds of a refit.
     pub fn refit(&self, bv: Bv) -> Option<f64> {
         column(bv).map(|at| self.refit[at])
     }
 
-    /// Milliseconds of a frame.
+    /// Returns the milliseconds of a frame.
     pub fn frame(&self, way: Way) -> Option<f64> {
         column(way.bv).map(|at| self.frame[usize::from(way.front)][2 * usize::from(way.moves) + at])
     }

@@ -1,4 +1,4 @@
-//! What a frame costs by the number of triangles, on one device and divided among several.
+//! Cost of a frame by the number of triangles, on one device and divided among several.
 
 use super::text::{Printed, digits};
 use crate::OneQueryOnSeveral;
@@ -10,55 +10,57 @@ use nearmiss::pipeline::Stages;
 use nearmiss::query::{Query, QueryKind};
 use serde::Serialize;
 
-/// A size, asked in one way.
+/// A size, with one query.
 #[derive(Clone, Debug, Serialize)]
 pub struct ScaleRow {
     /// The scene.
     pub scene: String,
     /// Triangles.
     pub triangles: usize,
-    /// What was asked.
+    /// Kind of the query.
     pub motion: QueryKind,
-    /// Among how many devices the work was divided.
+    /// Number of devices that share the work.
     pub devices: usize,
-    /// Whether they are one machine, asked one after another as if each were alone.
+    /// Whether they are one machine, run one after another as if each were alone.
     pub in_turn: bool,
     /// Median milliseconds of the slowest device: volumes.
     pub fit_ms: f64,
-    /// Candidates.
+    /// Milliseconds of the traversal.
     pub traverse_ms: f64,
-    /// Contacts.
+    /// Milliseconds of the narrow phase.
     pub narrow_ms: f64,
-    /// The frame.
+    /// Milliseconds of the frame.
     pub frame_ms: f64,
-    /// Milliseconds of one device over those: at most as many as there are devices. None of one.
+    /// Speed relative to one device: at most the number of devices. `None` for one device.
     pub speedup: Option<f64>,
-    /// How the frame grows with triangles: an exponent, from the size before. None of the first.
+    /// Growth of the frame's time with triangles, as an exponent relative to the size before.
+    /// `None` for the first size.
     pub exponent: Option<f64>,
     /// Bytes that all devices hold.
     pub bytes: u64,
-    /// Bytes of positions that each is told, both ends of a step.
+    /// Bytes of positions that each device receives, both ends of a step.
     pub positions: u64,
-    /// Bytes of the answer that go to the host.
+    /// Bytes of the answer that the host receives.
     pub answer: u64,
-    /// Tiles of 32 triangles that devices met beyond their own, all devices together: what hosts that have no others would be sent.
+    /// Tiles of 32 triangles that devices met outside of their own, all devices together. Hosts
+    /// without the other tiles would receive them.
     pub met_beyond: u64,
-    /// Pairs that the narrow test was asked.
+    /// Number of pairs that the narrow phase tested.
     pub candidates: u64,
-    /// What was found.
+    /// Number of contacts.
     pub contacts: usize,
-    /// Hash of the answer: that of one device.
+    /// Hash of the answer: equal to that of one device.
     pub hash: String,
 }
 
-/// Frames before those that count: lists grow, work is divided by what was measured.
+/// Warm-up frames: lists grow, and measured times divide the work.
 const WARM_UP: u32 = 4;
 
-/// Asks a draped cloth of each of those sizes at rest and in motion, on the first device and on all of them. `in_turn` says that they
-/// are one machine.
+/// Runs a draped cloth of each size, at one time and in motion. It runs on the first device, then
+/// on all of them. `in_turn` is whether they are one machine.
 ///
 /// # Errors
-/// Those of the device; [`Error::Bug`] where several devices find another answer than one.
+/// Device errors; [`Error::Bug`] if several devices find another answer than one.
 pub fn scale(
     devices: &[Device],
     in_turn: bool,

@@ -5,17 +5,17 @@ use super::front::FrontRow;
 use super::paper_reference::PAPER_GPU;
 use std::fmt::Write;
 
-/// A figure with a caption for people.
+/// A figure with a caption.
 pub trait Printed: Sized {
-    /// What it shows.
+    /// The caption.
     const CAPTION: &'static str;
-    /// The columns' heads.
+    /// Headings of the columns.
     const HEADS: &'static [&'static str];
-    /// A row, as many texts as there are heads.
+    /// Returns a row, as many texts as there are headings.
     fn row(&self) -> Vec<String>;
 }
 
-/// The caption, the heads and the rows, in columns; nothing for no rows.
+/// Returns the caption, the headings and the rows, in columns; an empty text for no rows.
 pub fn text<T: Printed>(rows: &[T]) -> String {
     if rows.is_empty() {
         return String::new();
@@ -25,7 +25,7 @@ pub fn text<T: Printed>(rows: &[T]) -> String {
     format!("{}\n{}\n", T::CAPTION.replace("PAPER_GPU", PAPER_GPU), aligned(&all))
 }
 
-/// Texts in columns: the first column to the left, the others to the right.
+/// Returns texts in columns: the first column to the left, the others to the right.
 pub fn aligned(rows: &[Vec<String>]) -> String {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |at: usize| rows.iter().filter_map(|row| row.get(at)).map(|t| t.chars().count()).max();
@@ -43,13 +43,13 @@ pub fn aligned(rows: &[Vec<String>]) -> String {
     text
 }
 
-/// Milliseconds and ratios: three digits that count.
+/// Returns milliseconds and ratios with three significant digits.
 pub fn digits(x: f64) -> String {
     let decimals = if x >= 100.0 || x == 0.0 { 0 } else { (2 - x.abs().log10().floor() as i32).clamp(0, 6) };
     format!("{x:.*}", decimals as usize)
 }
 
-/// A count, a comma after each three digits.
+/// Returns a count with a comma after each three digits.
 pub fn grouped(n: u64) -> String {
     let digits = n.to_string();
     let comma = |at: usize| if at > 0 && (digits.len() - at).is_multiple_of(3) { "," } else { "" };
@@ -116,7 +116,7 @@ impl Printed for Figure613 {
 
 impl Printed for Figure614 {
     const CAPTION: &'static str =
-        "Figure 6.14: where a frame's time goes, percent; the thesis gives a picture only";
+        "Figure 6.14: shares of a frame's time, percent; the thesis has only a picture";
     const HEADS: &'static [&'static str] =
         &["scene", "motion", "volume", "front", "refit", "traverse", "balance", "triangle tests", "of ms"];
     fn row(&self) -> Vec<String> {
@@ -137,7 +137,7 @@ impl Printed for Figure614 {
 
 impl Printed for FrontRow {
     const CAPTION: &'static str =
-        "A front, by the part of a step that things move; the thesis's bound is half of the node tests";
+        "A front, by the moved part of a step; the thesis's bound is half of the node tests";
     const HEADS: &'static [&'static str] = &[
         "scene",
         "motion",

@@ -1,25 +1,26 @@
-//! A column of figure 6.13: how a frame is asked.
+//! A column of figure 6.13: the way to run a frame.
 
 use nearmiss::query::{
     Broad, Bv, Continuous, ContinuousSolver, FrontShape, Precision, Query, Refit, Search, Traversal,
 };
 
-/// One way of asking a frame.
+/// One way to run a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Way {
-    /// Whether what moves is asked about, continuous; else discrete.
+    /// Whether the query is continuous; else discrete.
     pub moves: bool,
     /// The volume.
     pub bv: Bv,
-    /// Whether the walk goes on from the last frame's front.
+    /// Whether the walk starts from the last frame's front.
     pub front: bool,
 }
 
 impl Way {
-    /// Without a front, and with one where there is one.
+    /// Without a front, and with one.
     pub const FRONTS: [bool; 2] = [false, true];
 
-    /// Every way with these volumes, in the order of the thesis's columns: without the front first.
+    /// Returns every way with these volumes, in the order of the thesis's columns: without the
+    /// front first.
     pub fn every(volumes: &[Bv]) -> Vec<Way> {
         let mut ways = Vec::new();
         for front in Way::FRONTS {
@@ -30,15 +31,16 @@ impl Way {
         ways
     }
 
-    /// The query that asks so: of what moves by the thesis's own solver, the cubic; by that walk and with a launch a level, as the thesis, or by what is fastest. A front's own
-    /// descents go by native queues.
+    /// Returns the query. A continuous one uses the thesis's own solver, the cubic. With `walk` it
+    /// uses that walk and one launch per level, as in the thesis; otherwise the fastest. A front's
+    /// own descents use native queues.
     pub fn query(self, walk: Option<Traversal>) -> Query {
         let refit = walk.map(|_| Refit::Levels);
         let traversal = if self.front { Some(Traversal::Front(FrontShape::native())) } else { walk };
         let search =
             Search { broad: Some(Broad::Tree), bv: Some(self.bv), refit, traversal, ..Search::default() };
         if self.moves {
-            // The thesis does not look at the start of a step either.
+            // The thesis does not test the start of a step either.
             let solver = ContinuousSolver::Cubic(Precision::F64);
             Continuous { solver, search, assume_free: true }.into()
         } else {
@@ -46,7 +48,7 @@ impl Way {
         }
     }
 
-    /// `discrete`, `continuous`.
+    /// Returns `discrete` or `continuous`.
     pub fn asked(self) -> &'static str {
         if self.moves { "continuous" } else { "discrete" }
     }

@@ -141,7 +141,7 @@ fn bytes_of_a_scene() {
             told("volumes of all nodes", node * 2 * triangles);
             // Filters and records where there is more than one body.
             let many = u64::from(bodies > 1);
-            told("whose triangles lie below each node", many * 16 * 2 * triangles);
+            told("filter of each node", many * 16 * 2 * triangles);
             told("environment, groups and ranges of each body", many * 24 * bodies);
             // What rigid bodies need.
             told("vertices of rigid bodies without a pose", point * 8 * rigid);

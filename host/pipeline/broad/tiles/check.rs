@@ -1,4 +1,4 @@
-//! The checker of tiles: every volume against the positions, once they are read back.
+//! Checker of tiles: compares every volume with the positions, after download.
 
 use super::{FIXED, MOVING, Tiles};
 use crate::error::Error;
@@ -15,7 +15,7 @@ impl<V: Kernels> Tiles<V> {
     /// Checks tiles, and their rims if there are any.
     ///
     /// # Errors
-    /// [`Error::Bug`] with the first violation; those of the device.
+    /// [`Error::Bug`] with the first violation; device errors.
     pub(super) fn check_tiles<R: Precision>(
         &self,
         layout: &Layout,

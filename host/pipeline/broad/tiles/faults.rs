@@ -1,4 +1,4 @@
-//! Tiles that are wrong in one place, and that the checker names it.
+//! Tiles with one planted fault each: the checker must name it.
 
 use super::*;
 use crate::device::emulator::{Emulator, Mode};
@@ -9,10 +9,10 @@ use crate::scene::{Body, CollisionFilter};
 use nearmiss_kernels::abi::{self, LEAF, Point};
 use nearmiss_kernels::bv::{Aabb, Volume};
 
-/// Something that is done to sound tiles.
+/// A change to sound tiles.
 type Fault = fn(&mut Tiles<Aabb>);
 
-/// What the checker says of tiles over three bodies, one of them static, after `fault`.
+/// Returns the checker's verdict on tiles over three bodies, one of them static, after `fault`.
 fn checked(fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), Error> {
     let bodies = [
         soup(700, 5, false),
@@ -22,7 +22,7 @@ fn checked(fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), Error> {
     checked_of(&bodies, fault)
 }
 
-/// The checker's verdict on 4,096 faces round one hub, with rims, after `fault`.
+/// Returns the checker's verdict on 4,096 faces round one hub, with rims, after `fault`.
 fn checked_rims(fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), Error> {
     let n = 4_096;
     let on_rim = |k: u32| [(k % 64) as f32, (k / 64) as f32, 1.0];
@@ -31,7 +31,7 @@ fn checked_rims(fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), Error> {
     checked_of(&[Body::deformable(Mesh::new("fan", Positions::F32(points), faces)?)], fault)
 }
 
-/// The checker's verdict on tiles over these bodies after `fault`.
+/// Returns the checker's verdict on tiles over these bodies after `fault`.
 fn checked_of(bodies: &[Body], fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), Error> {
     let device = Device::emulator(Emulator::new(Mode::Engine, None)?);
     let mut layout = Layout::new(bodies, QueryKind::Discrete);
@@ -62,9 +62,9 @@ fn change<T: bytemuck::Pod>(buffer: &mut Buffer<T>, at: usize, change: impl Fn(&
     buffer.write(&all).expect("written");
 }
 
-/// The first leaf of the static body: behind three and a half groups of 16 tiles.
+/// The first leaf of the static body: after three and a half groups of 16 tiles.
 const STATIC_LEAF: usize = 4 * 512;
-/// The node above the second 16 tiles: behind all tiles.
+/// The node above the second 16 tiles: after all tiles.
 const ABOVE: usize = 6 * 16 + 1;
 
 #[test]
@@ -72,7 +72,7 @@ fn sound_tiles_pass() {
     checked(|_| ()).expect("sound tiles");
 }
 
-/// Volumes of other positions than those that they are asked to hold.
+/// Volumes are checked against other positions than those that they were fitted to.
 #[test]
 fn a_triangle_outside_is_named() {
     let held = |by: f64| {
@@ -101,7 +101,7 @@ fn a_triangle_outside_is_named() {
     };
     use nearmiss_kernels::bvh::Violation::Outside;
     assert_eq!(held(1.0), Ok(()));
-    // The way to the end counts, and the least step beyond it.
+    // The positions at the end count, and so does the least step beyond the volume.
     assert_eq!(held(1.0f64.next_up()), Err(Outside { leaf: 0, level: 0 }));
 }
 
@@ -111,7 +111,7 @@ fn every_fault_is_named() {
         ("Fit { node: 40 }", |tiles| change(&mut tiles.leaves, 40, |node| node.link = LEAF | 3)),
         ("Leaf { leaf: 41 }", |tiles| change(&mut tiles.leaves, 41, |node| node.last = 3)),
         ("Leaf { leaf: 42 }", |tiles| change(&mut tiles.leaves, 42, |node| node.link &= !LEAF)),
-        // A triangle of the static body among those that move, and one behind the last that is there.
+        // A triangle of the static body among moving ones, and one past the last triangle.
         ("Leaf { leaf: 43 }", |tiles| change(&mut tiles.leaves, 43, |node| node.link = LEAF | 1_700)),
         ("Leaf { leaf: 1700 }", |tiles| change(&mut tiles.leaves, 1_700, |node| node.link = LEAF | 3)),
         ("Leaf { leaf: 2050 }", |tiles| {
@@ -162,7 +162,7 @@ fn every_fault_of_a_rim_is_named() {
     }
 }
 
-/// With memory for other tiles than these.
+/// Memory for another number of tiles.
 #[test]
 fn another_number_of_triangles_is_named() {
     let error = checked(|tiles| tiles.triangles[FIXED] = 3_000).expect_err("too few places");

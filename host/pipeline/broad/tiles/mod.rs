@@ -1,4 +1,5 @@
-//! Tiles: 32 triangles that are neighbours along a curve, and nodes above them without links; see `nearmiss_kernels::bvh::tiles`.
+//! Tiles: groups of 32 triangles that are neighbours along a curve, and link-free nodes above them;
+//! see `nearmiss_kernels::bvh::tiles`.
 
 mod check;
 #[cfg(test)]
@@ -28,46 +29,49 @@ use static_margin::StaticMargin;
 use std::collections::BTreeSet;
 use xxhash_rust::xxh3::xxh3_64;
 
-/// Pairs of tiles a tile for which there is room at first. Cloth at rest has 12; a list that turns out too short grows within the frame.
+/// Initial capacity, in pairs of tiles per tile. Cloth at rest has 12. A list that is too short
+/// grows within the frame.
 const PAIRS_A_TILE: usize = 32;
-/// A sample is one of so many tiles, with all that it meets.
+/// A sample has one of so many tiles, with all tiles that it meets.
 const SAMPLE: u32 = 64;
-/// So many tiles there are where a sample saves more than it costs, which on a GPU are its launches: of 1,000 tiles it costs an H200 more.
+/// Least number of tiles for which a sample saves more than it costs. On a GPU its cost is
+/// launches: with 1,000 tiles it slows an H200 down.
 const SAMPLED: u32 = 2048;
-/// The parts of the memory: what moves, and what is static.
+/// The two parts of the memory: moving and static.
 const MOVING: usize = 0;
 const FIXED: usize = 1;
 
-/// The order of static triangles: bodies, and triangles.
+/// The order of static triangles: bodies and triangles.
 struct StaticOrder {
     bodies: Vec<TreeBody>,
     triangles: Buffer<u64>,
 }
 
-/// See above.
+/// Tiles over the bodies of a layout.
 pub struct Tiles<V> {
     levels: Levels,
-    /// Triangles of what moves, and of what is static.
+    /// Number of moving and of static triangles.
     triangles: [u32; 2],
-    /// The order of what moves.
+    /// The order of moving triangles.
     sorted: Sorted,
-    /// Static triangles in order, once there are tiles of them.
+    /// Static triangles in order, once their tiles exist.
     fixed: Option<StaticOrder>,
     static_margin: StaticMargin,
     leaves: Buffer<Node<V>>,
     nodes: Buffer<Node<V>>,
-    /// Whose triangles lie below each node; empty where that does not matter.
+    /// Filters of the triangles below each node; empty if no filter applies.
     filters: Buffer<NodeFilter>,
-    /// Whose each triangle is; the same.
+    /// Filter of each triangle; empty in the same case.
     whose: Buffer<NodeFilter>,
-    /// The hub of every triangle, and the rim of every node; both empty if no pair is left out by them.
+    /// The hub of every triangle and the rim of every node; both empty if no pair is left out by
+    /// them.
     hubs: Buffer<u32>,
     rims: Buffer<Node<V>>,
     has_groups: bool,
     tile_pairs: List<Pair>,
-    /// What each tile cost; where work is divided.
+    /// Cost of each tile, if work is divided.
     work: Option<Buffer<u64>>,
-    /// Behind the last tile of the last share, and how many pairs of tiles it listed.
+    /// End of the last share's tiles, and how many pairs of tiles it listed.
     listed: (u32, u64),
     order: Order,
     axes: Axes,
@@ -75,10 +79,11 @@ pub struct Tiles<V> {
 }
 
 impl<V: Kernels> Tiles<V> {
-    /// Takes the memory of tiles over the bodies of a layout, of which some move; they hold everything within `margin` of the triangles.
+    /// Allocates tiles over the bodies of a layout. At least one body moves. Volumes hold
+    /// everything within `margin` of the triangles.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new(
         device: &Device,
         layout: &Layout,
@@ -90,7 +95,7 @@ impl<V: Kernels> Tiles<V> {
         let count = levels.first(levels.count) as usize;
         let volumes = device.of(purpose::TILES);
         let mut leaves = volumes.buffer(levels.leaves() as usize)?;
-        // What lies between the parts is never written, and nobody asks for it but who compares all memory.
+        // Memory between the parts is never written. Only a comparison of all memory reads it.
         leaves.clear()?;
         let nothing = Node { volume: V::zeroed(), link: NONE, last: 0 };
         let whose: Vec<NodeFilter> = if layout.has_filters() { layout.whose().collect() } else { Vec::new() };
@@ -98,7 +103,7 @@ impl<V: Kernels> Tiles<V> {
         let mut of_nodes = filters.buffer(if whose.is_empty() { 0 } else { count })?;
         of_nodes.clear()?;
         let mut rims = device.of(purpose::RIMS).buffer(if layout.rims.is_empty() { 0 } else { count })?;
-        // Static tiles have none.
+        // Static tiles have no rims.
         rims.clear()?;
         let room = PAIRS_A_TILE * triangles[MOVING].div_ceil(TILE) as usize;
         Ok(Tiles {
@@ -123,13 +128,14 @@ impl<V: Kernels> Tiles<V> {
         })
     }
 
-    /// The nodes of a level of a part, and those below them; below tiles none, from [`NONE`] on.
+    /// Returns a part's nodes of a level, and those one level below. Below tiles there are none:
+    /// they start at [`NONE`].
     fn own_and_below(&self, level: u32, part: usize) -> [Part; 2] {
         let of = |level| self.levels.part(level, part, self.triangles[part]);
         [of(level), level.checked_sub(1).map_or(Part { first: NONE, count: 0 }, of)]
     }
 
-    /// Whose triangles lie below each node of a part, once they are in order.
+    /// Writes the filter below each node of a part, once its triangles are in order.
     fn filter(&self, device: &Device, part: usize, triangles: Span<u64>) -> Result<(), Error> {
         if self.filters.is_empty() {
             return Ok(());
@@ -150,7 +156,7 @@ impl<V: Kernels> Tiles<V> {
         Ok(())
     }
 
-    /// Volumes of the triangles of a part, of its tiles, and of the nodes above these.
+    /// Fits the volumes of a part's triangles, of its tiles, and of the nodes above these.
     fn fit<R: Precision>(
         &self,
         given: &BroadContext<R>,
@@ -173,7 +179,7 @@ impl<V: Kernels> Tiles<V> {
         launch::blocks::<entry::fit_tiles<R, V>>(given.device, above.count, &args)
     }
 
-    /// Volumes of static tiles, if they are not yet fitted with a margin that is right.
+    /// Fits static tiles, unless they are already fitted with a suitable margin.
     fn fit_static<R: Precision>(&mut self, given: &BroadContext<R>) -> Result<(), Error> {
         let fixed = self.fixed.as_ref().map(|fixed| fixed.triangles.span());
         let Some(triangles) = fixed.filter(|_| self.static_margin.take(self.margin, !given.is_submitted))
@@ -184,7 +190,7 @@ impl<V: Kernels> Tiles<V> {
         Tiles::refit(self, given.device, FIXED)
     }
 
-    /// Volumes of the nodes of a part from the third level on.
+    /// Refits a part's nodes from the third level on.
     fn refit(&self, device: &Device, part: usize) -> Result<(), Error> {
         for level in 2..self.levels.count {
             let of = |level| self.levels.part(level, part, self.triangles[part]);
@@ -205,19 +211,19 @@ impl<V: Kernels> Tiles<V> {
         Ok(())
     }
 
-    /// Tiles of what moves.
+    /// Returns the number of moving tiles.
     fn tiles(&self) -> u32 {
         self.levels.part(0, MOVING, self.triangles[MOVING]).count
     }
 
-    /// Which pairs are asked.
+    /// Returns the filters of the pairs.
     fn filters(&self, records: Span<BodyRecord>) -> FilterArgs {
         let bodies = if self.has_groups { records } else { Span::EMPTY };
         FilterArgs { nodes: self.filters.span(), bodies }
     }
 }
 
-/// Pairs of tiles, then their triangles.
+/// Lists pairs of tiles, then their pairs of triangles.
 fn walk<V, Pairs, Triangles>(
     device: &Device,
     (pairs, triangles): (&TilePairsArgs<V>, &TileTrianglesArgs<V>),
@@ -227,7 +233,7 @@ where
     Pairs: Entry<Args = TilePairsArgs<V>>,
     Triangles: Entry<Args = TileTrianglesArgs<V>>,
 {
-    // A GPU has a block for each tile that seeks; a CPU's few go from one to the next.
+    // A GPU has a block for each moving tile; the few blocks of a CPU stride over them.
     let seeking = (pairs.to - pairs.from).div_ceil(pairs.every);
     let few = || device.blocks_striding::<Pairs>((seeking * TILE) as usize);
     let blocks = if device.is_gpu() { seeking } else { few() };
@@ -346,7 +352,8 @@ impl<R: Precision, V: Kernels> BroadPhase<R> for Tiles<V> {
 
     fn met_beyond(&self) -> Result<u64, Error> {
         let (end, count) = self.listed;
-        // The first tile of a pair is the earlier one, and of the share; static tiles, behind the others, are everybody's.
+        // The first tile of a pair is the earlier one, and in the share. Static tiles come last and
+        // belong to every share.
         let beyond = end..self.tiles();
         let pairs = self.tile_pairs.first(count)?;
         let met: BTreeSet<u32> =

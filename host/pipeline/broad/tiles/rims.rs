@@ -11,10 +11,10 @@ use nearmiss_kernels::entry::{self, Kernels};
 use nearmiss_kernels::math::Vec3;
 
 impl<V: Kernels> Tiles<V> {
-    /// Rims of the nodes of what moves.
+    /// Fits the rims of the moving nodes.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub(super) fn fit_rims<R: Precision>(&self, given: &BroadContext<R>) -> Result<(), Error> {
         if self.rims.is_empty() {
             return Ok(());
@@ -39,10 +39,10 @@ impl<V: Kernels> Tiles<V> {
         Ok(())
     }
 
-    /// Checks the hubs and the rims of all nodes, where there are any.
+    /// Checks the hubs and the rims of all nodes, if there are any.
     ///
     /// # Errors
-    /// [`Error::Bug`] with the first violation; those of the device.
+    /// [`Error::Bug`] with the first violation; device errors.
     pub(super) fn check_rims<R: Precision>(
         &self,
         tiles: &tiles::Tiles<V>,

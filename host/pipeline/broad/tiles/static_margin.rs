@@ -1,25 +1,27 @@
 //! The margin of static tiles, which are fitted once and serve queries of several margins.
 //!
-//! A larger one is right for every smaller one, at the cost of more candidates. So static tiles are fitted again as soon as a query needs
-//! more, and when they have held more than twice the need for some time.
+//! A larger margin is right for every smaller one, at the cost of more candidates. Static tiles are
+//! fitted again as soon as a query needs a larger margin. They are also fitted again when the
+//! margin has exceeded twice the need for `PATIENCE` queries.
 
-/// Fits in a row after which a margin that is too large shrinks. It is in no answer.
+/// Number of queries in a row after which a margin that is too large shrinks. It affects no answer.
 const PATIENCE: u32 = 16;
 
-/// The margin that static tiles were fitted with, and the need since then.
+/// The margin that static tiles were fitted with, and the largest need since then.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StaticMargin {
     /// `None` before the first fit.
     fitted: Option<f32>,
-    /// Largest need of the last fits.
+    /// Largest need of the recent queries.
     most: f32,
-    /// Number of those.
+    /// Number of those queries.
     fits: u32,
 }
 
 impl StaticMargin {
-    /// A query needs this margin: whether static tiles must be fitted now, with [`StaticMargin::fitted`]. It does not shrink in a
-    /// submission, which may be recorded and never run; and it need not grow there, as each query has run before.
+    /// Takes the margin that a query needs. Returns whether static tiles must be fitted now, with
+    /// [`StaticMargin::fitted`]. The margin does not shrink in a submission, which may be recorded
+    /// and never run. It need not grow there, as each query has run before.
     pub fn take(&mut self, margin: f32, may_shrink: bool) -> bool {
         (self.most, self.fits) = (self.most.max(margin), self.fits + 1);
         let fitted = match self.fitted {
@@ -40,7 +42,7 @@ impl StaticMargin {
         true
     }
 
-    /// The margin of the last fit; 0 before there was one.
+    /// Returns the margin of the last fit; 0 before the first.
     pub fn fitted(&self) -> f32 {
         self.fitted.unwrap_or(0.0)
     }
@@ -55,7 +57,7 @@ mod tests {
         let mut margin = StaticMargin::default();
         assert!(margin.take(0.0, true) && margin.fitted() == 0.0);
         assert!(margin.take(1.0, true) && margin.fitted() == 1.0);
-        // Two queries by turns fit nothing.
+        // Two alternating queries cause no fit.
         for _ in 0..5 * PATIENCE {
             assert!(!margin.take(0.1, true) && !margin.take(1.0, true));
         }
@@ -64,7 +66,7 @@ mod tests {
         assert!(fits == 1 && margin.fitted() == 0.1, "{margin:?}");
     }
 
-    /// A need that was forgotten would lose pairs, and is seen here.
+    /// A forgotten need would lose pairs; this test notices it.
     #[test]
     fn the_largest_of_the_last_needs_counts() {
         let mut margin = StaticMargin::default();

@@ -1,8 +1,8 @@
-//! The trees of a scene: one over what moves, refitted every frame, and beside it, built and fitted once, one over what
-//! is static.
+//! The trees of a scene: a moving tree, refitted every frame, and a static tree, built and fitted
+//! once.
 //!
-//! Both lie in one memory below one root, so that one walk finds all pairs: of what moves with itself, and with what is
-//! static. See `nearmiss_kernels::stage::construct::graft`.
+//! Both share one memory and one root, so that one walk finds all pairs: moving with moving, and
+//! moving with static. See `nearmiss_kernels::stage::construct::graft`.
 
 use super::tree::{Room, Tree, TreeSpec};
 use super::volumes::Volumes;
@@ -24,9 +24,9 @@ use nearmiss_kernels::math::Vec3;
 
 /// The trees of a scene.
 pub struct Forest<V> {
-    /// The tree over what moves.
+    /// The moving tree.
     pub tree: Tree,
-    /// Its volumes, and those of what is static.
+    /// Volumes of both trees.
     pub volumes: Volumes<V>,
     has_groups: bool,
     fixed: Option<Fixed>,
@@ -36,18 +36,18 @@ pub struct Forest<V> {
 struct Fixed {
     bodies: Vec<usize>,
     layout: (Vec<TreeBody>, u32),
-    /// Where each level begins; empty before it is built.
+    /// Start of each level; empty before the tree is built.
     starts: Vec<u32>,
     refit: Refit,
-    /// Its volumes hold everything within this of its triangles.
+    /// Its volumes hold everything within this distance of its triangles.
     margin: f32,
 }
 
 impl<V: Kernels> Forest<V> {
-    /// Takes the memory of the trees over the bodies of a layout, of which some move.
+    /// Allocates the trees over the bodies of a layout. At least one body moves.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new(
         device: &Device,
         layout: &Layout,
@@ -70,10 +70,10 @@ impl<V: Kernels> Forest<V> {
         Ok(Forest { tree, volumes, has_groups: layout.has_groups(), fixed })
     }
 
-    /// Builds the tree over what moves, and once, the first time, that over what is static.
+    /// Builds the moving tree and, the first time, the static one.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn construct<R: Precision>(&mut self, given: &BroadContext<R>, layout: &Layout) -> Result<(), Error> {
         let BroadContext { device, frames, faces, records, .. } = *given;
         self.tree.construct::<R>(device, frames, (faces, records))?;
@@ -106,7 +106,8 @@ impl<V: Kernels> Forest<V> {
         }
     }
 
-    /// Sets the margin of volumes from the next fit on; whether the static tree must be built again for that.
+    /// Sets the margin of volumes from the next fit on. Returns whether the static tree must be
+    /// built again for it.
     pub fn set_margin(&mut self, margin: f32) -> bool {
         self.volumes.margin = margin;
         let Some(fixed) = self.fixed.as_mut().filter(|fixed| margin > fixed.margin) else { return false };
@@ -115,18 +116,18 @@ impl<V: Kernels> Forest<V> {
         true
     }
 
-    /// Which pairs a walk asks, of bodies with these records.
+    /// Returns the filters of a walk's pairs, for bodies with these records.
     pub fn filters(&self, records: Span<BodyRecord>) -> FilterArgs {
         let bodies = if self.has_groups { records } else { Span::EMPTY };
         FilterArgs { nodes: self.tree.filters.span(), bodies }
     }
 
-    /// What a walk must know of the trees.
+    /// Returns the flags that a walk over these trees needs.
     pub fn flags(&self) -> TraverseFlags {
         TraverseFlags::GRAFTED.when(self.fixed.is_some())
     }
 
-    /// Levels of the tree over what moves and, where there is one, of that over what is static.
+    /// Returns the number of levels of the moving tree and, if there is one, of the static tree.
     pub fn depths(&self) -> Vec<usize> {
         let fixed = self.fixed.as_ref().map(|fixed| fixed.starts.len().saturating_sub(1));
         std::iter::once(self.tree.depth()).chain(fixed).collect()
@@ -135,7 +136,7 @@ impl<V: Kernels> Forest<V> {
     /// Checks both trees and their volumes.
     ///
     /// # Errors
-    /// [`Error::Bug`] with the first violation; those of the device.
+    /// [`Error::Bug`] with the first violation; device errors.
     pub fn check<R: Precision>(
         &self,
         layout: &Layout,
@@ -182,12 +183,14 @@ impl<V: Kernels> Forest<V> {
         self.volumes.check_nodes((&links, &nodes, &leaf_nodes), (ROOT, fixed.margin), faces, frames)
     }
 
-    /// The nodes of the static tree as they were before they were grafted, and the parents of their pairs.
+    /// Returns the nodes of the static tree as they were before they were grafted, and the parents
+    /// of their pairs.
     fn ungrafted(&self, fixed: &Fixed) -> Result<(Vec<Node<V>>, Vec<u32>), Error> {
         let (own, count) = (self.tree.leaves() as u32, fixed.layout.1);
         let nodes = self.volumes.download()?;
         let parents = self.tree.pair_parents.read(self.tree.pair_parents.len())?;
-        // A node of the other numbering; a wrong one becomes one that no check lets pass.
+        // Maps a node back to the static tree's own numbers; a wrong number stays wrong, and a
+        // check fails.
         let back = |at: u32| if at == grafted(ROOT, own) { ROOT } else { at.wrapping_sub(2 * own) };
         let mut all = vec![bytemuck::Zeroable::zeroed(); 2 * count as usize];
         for node in ROOT..2 * count {

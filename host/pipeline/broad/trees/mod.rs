@@ -1,4 +1,4 @@
-//! Trees: one over what moves, refitted every frame, and one over what is static, walked by one of many ways.
+//! Trees: a moving one, refitted every frame, and a static one, traversed by one of several walks.
 
 mod forest;
 mod tree;
@@ -26,17 +26,17 @@ use nearmiss_kernels::math::Vec3;
 use walk::{Walk, WalkContext, walk};
 use xxhash_rust::xxh3::xxh3_64;
 
-/// See above.
+/// The trees of a scene, and the walk of a query.
 pub struct Trees<R: Precision, V> {
     forest: Forest<V>,
     walk: Box<dyn Walk<R, V>>,
 }
 
 impl<R: Precision, V: Kernels> Trees<R, V> {
-    /// Takes the memory of the trees over the bodies of a layout, and of the walk that a query asks for.
+    /// Allocates the trees over the bodies of a layout, and the walk of a query.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new(
         device: &Device,
         layout: &Layout,

@@ -16,7 +16,7 @@ use nearmiss_kernels::abi::{
 use nearmiss_kernels::bvh::{self, MAX_LEVELS};
 use nearmiss_kernels::entry;
 
-/// A level-ordered tree without volumes, and what building it again needs.
+/// A level-ordered tree without volumes, and the memory to build it again.
 pub struct Tree {
     /// The nodes; see [`nearmiss_kernels::stage::construct::tree`].
     pub links: Buffer<Link>,
@@ -24,27 +24,28 @@ pub struct Tree {
     pub pair_parents: Buffer<u32>,
     /// Each leaf's node.
     pub leaf_nodes: Buffer<u32>,
-    /// The first leaf below each pair of siblings; empty where all nodes are merged.
+    /// The first leaf below each pair of siblings; empty if all nodes are merged.
     pub firsts: Buffer<u32>,
-    /// Number of levels, then where each begins, then where the last ends.
+    /// Number of levels, then the start of each, then the end of the last.
     pub levels: Buffer<u32>,
-    /// Whose triangles lie below each node; empty where that does not matter.
+    /// Filters of the triangles below each node; empty if no filter applies.
     pub filters: Buffer<NodeFilter>,
     /// The hub of every triangle of the scene; empty without hubs.
     hubs: Buffer<u32>,
-    /// How it is refitted.
+    /// How the tree is refitted.
     pub way: RefitPlan,
-    /// The same, as the host needs it to launch.
+    /// The levels' starts, as the host needs them to launch.
     starts: Vec<u32>,
-    /// Its triangles. What it keeps zero beside is for the counts of the depths, for marks of nodes of different hubs, and
-    /// for what the treelets count.
+    /// Its sorted triangles. The extra zeroed words hold the counts of the depths, marks of nodes
+    /// with different hubs, and the treelets' counts.
     sorted: Sorted,
     count: u32,
     room: Room,
     scratch: Scratch,
 }
 
-/// Memory of the construction beside the sorting, 16 bytes a triangle; kept, so that building again takes none.
+/// Memory of the construction except the sort, 16 bytes a triangle; kept, so that a rebuild
+/// allocates none.
 struct Scratch {
     inner: Buffer<Inner>,
     parents: Buffer<u32>,
@@ -52,17 +53,17 @@ struct Scratch {
     places: Buffer<u32>,
 }
 
-/// Where in the memory for nodes a tree lies.
+/// A tree's place in the memory for nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Room {
-    /// All of it.
+    /// All of the memory.
     Alone,
-    /// Below one root with a tree of so many leaves that will be grafted behind it.
+    /// Below one root with a tree of so many leaves, which will be grafted behind it.
     Beside(u32),
 }
 
 impl Room {
-    /// The root's index.
+    /// Returns the root's index.
     pub fn root(self) -> u32 {
         match self {
             Room::Alone => ROOT,
@@ -70,7 +71,7 @@ impl Room {
         }
     }
 
-    /// Leaves of the other tree.
+    /// Returns the number of leaves of the other tree.
     pub fn others(self) -> u32 {
         match self {
             Room::Alone => 0,
@@ -79,14 +80,14 @@ impl Room {
     }
 }
 
-/// What a tree is built over, and for what.
+/// Parameters of a tree.
 #[derive(Clone, Copy)]
 pub struct TreeSpec<'a> {
     /// The bodies.
     pub layout: &'a Layout,
-    /// Which of them, ascending, each with triangles; at least one.
+    /// Indices of its bodies, ascending, each with triangles; at least one.
     pub bodies: &'a [usize],
-    /// Where it lies.
+    /// The tree's place.
     pub room: Room,
     /// How it will be refitted.
     pub refit: Refit,
@@ -95,22 +96,22 @@ pub struct TreeSpec<'a> {
 }
 
 impl<'a> TreeSpec<'a> {
-    /// A tree over everything of a layout that moves, by itself.
+    /// Returns the parameters of one tree over all moving bodies of a layout.
     pub fn alone(layout: &'a Layout, refit: Refit, groups: bool) -> TreeSpec<'a> {
         TreeSpec { layout, bodies: &layout.trees[0], room: Room::Alone, refit, groups }
     }
 }
 
 impl Tree {
-    /// Takes the memory of a tree, and of its refit.
+    /// Allocates a tree, and its refit.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new(device: &Device, plan: &TreeSpec) -> Result<Tree, Error> {
         let TreeSpec { layout, bodies, room, refit, groups } = *plan;
         let count = bodies.iter().map(|&body| layout.triangles(body).1).sum::<u32>();
         let (n, inner) = (count as usize, count as usize - 1);
-        // Pairs of siblings begin behind the root; what is not used before it is counted too.
+        // Pairs of siblings begin behind the root; unused words before it count too.
         let pairs = n + room.root() as usize / 2;
         let all = n + room.others() as usize;
         let way = RefitPlan::new(&device.of(purpose::REFIT), refit, count, pairs)?;
@@ -139,13 +140,14 @@ impl Tree {
         })
     }
 
-    /// Builds the hierarchy, all on the device but for an order of the bodies, where there are more than one;
-    /// [`Tree::learn_levels`] ends it. It has no volumes yet. `records` is what the kernels know of all bodies of the scene, empty
-    /// where there are no filters. Cost: ten launches, four of them a radix sort, and one for treelets where those are asked
-    /// for; linear memory. Of more bodies a wait for their boxes.
+    /// Builds the hierarchy, without volumes; [`Tree::learn_levels`] completes it. All work is on
+    /// the device, except the order of the bodies: with more than one, it waits for their boxes.
+    /// `records` has all bodies of the scene; it is empty if there are no filters. Cost: ten
+    /// launches, four of them a radix sort, and one for treelets if the refit uses them; linear
+    /// memory.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn construct<R: Precision>(
         &mut self,
         device: &Device,
@@ -188,10 +190,11 @@ impl Tree {
         self.way.prepare(device, &args)
     }
 
-    /// Reads how many levels there are, of a tree that was just built: the only thing about it that the host must know.
+    /// Reads the number of levels of a tree that was just built: the only value that the host must
+    /// know.
     ///
     /// # Errors
-    /// [`Error::Bug`] for levels that are none; those of the device.
+    /// [`Error::Bug`] for invalid levels; device errors.
     pub fn learn_levels(&mut self) -> Result<(), Error> {
         let levels = self.levels.read(self.levels.len())?;
         let count = levels[0] as usize;
@@ -204,51 +207,51 @@ impl Tree {
         Ok(())
     }
 
-    /// How many levels the tree has.
+    /// Returns the number of levels.
     pub fn depth(&self) -> usize {
         self.starts.len() - 1
     }
 
-    /// How many leaves the tree has: at least one.
+    /// Returns the number of leaves, at least one.
     pub fn leaves(&self) -> usize {
         self.count as usize
     }
 
-    /// Where each level begins, the root's first, and where the last ends.
+    /// Returns the start of each level, the root's first, and the end of the last.
     pub fn starts(&self) -> &[u32] {
         &self.starts
     }
 
-    /// The nodes as they lie on the device.
+    /// Downloads the nodes.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn download(&self) -> Result<Vec<Link>, Error> {
         let mut links = self.links.read(self.links.len())?;
-        // Nodes before the root are not used and nothing writes them.
+        // Nodes before the root are unused and never written.
         links[..self.root() as usize].fill(Link::default());
         Ok(links)
     }
 
-    /// Triangles in leaf order: the lower halves.
+    /// Returns the triangles in leaf order: the lower halves of the words.
     pub fn triangles(&self) -> Span<u64> {
         self.sorted.triangles()
     }
 
-    /// The root's index.
+    /// Returns the root's index.
     pub fn root(&self) -> u32 {
         self.room.root()
     }
 
-    /// Where it lies.
+    /// Returns the tree's place.
     pub fn room(&self) -> Room {
         self.room
     }
 
-    /// Checks the tree as it lies on the device, whose triangles lie below each node, too.
+    /// Checks the tree on the device, and the filters of its nodes.
     ///
     /// # Errors
-    /// [`Error::Bug`] with the first violation; those of the device.
+    /// [`Error::Bug`] with the first violation; device errors.
     pub fn check(&self) -> Result<(), Error> {
         let tree = bvh::Tree {
             links: &self.download()?,
@@ -261,7 +264,7 @@ impl Tree {
         bvh::check(&tree, &mut vec![false; self.leaves()]).map_err(broken)
     }
 
-    /// The tree's bodies.
+    /// Returns the tree's bodies.
     pub fn bodies(&self) -> &[TreeBody] {
         self.sorted.bodies()
     }

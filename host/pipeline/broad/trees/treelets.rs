@@ -10,19 +10,20 @@ use nearmiss_kernels::entry;
 
 /// How a tree is refitted, with the memory for it.
 pub enum RefitPlan {
-    /// A launch a level.
+    /// One launch per level.
     Levels,
-    /// A block a treelet.
+    /// One block per treelet.
     Treelets(Box<Plan>),
     /// Whoever comes second to a pair goes on: how many came by each pair, in all frames.
     BottomUp(Buffer<u64>),
 }
 
 impl RefitPlan {
-    /// Takes the memory for a tree of `count` leaves (at least one), whose pairs of siblings have numbers below `pairs`.
+    /// Allocates the plan for a tree of `count` leaves (at least one). Its pairs of siblings have
+    /// numbers below `pairs`.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new(device: &Device, refit: Refit, count: u32, pairs: usize) -> Result<RefitPlan, Error> {
         Ok(match refit {
             Refit::Levels => RefitPlan::Levels,
@@ -31,7 +32,7 @@ impl RefitPlan {
         })
     }
 
-    /// How many zeroed words a construction needs for it.
+    /// Returns how many zeroed words its construction needs.
     pub fn zeroed(&self) -> usize {
         match self {
             RefitPlan::Treelets(plan) => plan.treelets.len() + TOPS,
@@ -39,7 +40,7 @@ impl RefitPlan {
         }
     }
 
-    /// Those words: where treelets begin, and how many nodes of the top there are.
+    /// Splits those words: the treelets' starts, and the number of nodes of the top.
     pub fn parts(&self, zeroed: Span<u64>) -> [Span<u64>; 2] {
         match self {
             RefitPlan::Treelets(plan) => {
@@ -50,7 +51,7 @@ impl RefitPlan {
         }
     }
 
-    /// The leaves' places, where they are needed.
+    /// Returns the leaves' places, or an empty span if they are not needed.
     pub fn leaf_places(&self) -> Span<LeafPlace> {
         match self {
             RefitPlan::Treelets(plan) => plan.leaf_places.span(),
@@ -61,7 +62,7 @@ impl RefitPlan {
     /// Prepares for a tree that was just built.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn prepare(&mut self, device: &Device, tree: &TreeArgs) -> Result<(), Error> {
         match self {
             RefitPlan::Levels => Ok(()),
@@ -71,9 +72,10 @@ impl RefitPlan {
     }
 }
 
-/// The treelets of a tree: see `nearmiss_kernels::stage::construct::treelet`. About 30 bytes a leaf.
+/// The treelets of a tree, about 30 bytes a leaf; see
+/// `nearmiss_kernels::stage::construct::treelet`.
 pub struct Plan {
-    /// The treelets, one a chunk of leaves.
+    /// The treelets, one per chunk of leaves.
     pub treelets: Buffer<Treelet>,
     /// The leaves' places.
     pub leaf_places: Buffer<LeafPlace>,
@@ -81,19 +83,20 @@ pub struct Plan {
     pub merges: Buffer<Merge>,
     /// Merges of the nodes that span treelets.
     pub top: Buffer<Merge>,
-    /// How many depths of them there are, and where each begins.
+    /// The number of depths of these nodes, and the start of each.
     pub top_starts: Buffer<u32>,
-    /// Tickets drawn by blocks of refits so far.
+    /// Number of tickets that blocks of refits have drawn so far.
     pub ticket: Buffer<u64>,
 }
 
-/// Of each depth: how many nodes span treelets, and a cursor.
+/// Two words per depth: the number of nodes that span treelets, and a cursor.
 const TOPS: usize = 2 * MAX_LEVELS as usize;
 
 impl Plan {
     fn new(device: &Device, count: u32) -> Result<Plan, Error> {
         let (leaves, treelets) = (count as usize, count.div_ceil(TREELET) as usize);
-        // The nodes of one depth have different leaves, those of the top more than TREELET each.
+        // Nodes of one depth have different leaves. Each node of the top has more than TREELET of
+        // them.
         let a_depth = leaves / (TREELET as usize + 1);
         Ok(Plan {
             treelets: device.buffer(treelets)?,
@@ -124,9 +127,9 @@ impl Plan {
         launch::blocks::<entry::construct_treelets>(device, self.blocks(), &args)
     }
 
-    /// Blocks of a refit: one a treelet.
+    /// Returns the number of blocks of a refit: one per treelet.
     pub fn blocks(&self) -> u32 {
-        // There are fewer than leaves, which 32 bits count.
+        // There are fewer treelets than leaves, which fit 32 bits.
         self.treelets.len() as u32
     }
 }
@@ -144,8 +147,8 @@ mod tests {
     use nearmiss_kernels::entry::Kernels;
     use nearmiss_kernels::math::Vec3;
 
-    /// A tree that was refitted once, then moved and refitted again after `fault` was planted; on one thread, so that
-    /// blocks run in their order.
+    /// Returns the verdict on a tree that was refitted, moved, and refitted again after `fault`. It
+    /// has one thread, so that blocks run in their order.
     fn checked<V: Kernels>(refit: Refit, fault: impl Fn(&mut Tree)) -> Result<(), Error> {
         let device = Device::emulator(Emulator::new(Mode::Engine, Some(1))?);
         let body = soup(2_000, 5, false);
@@ -181,7 +184,7 @@ mod tests {
         }
     }
 
-    /// Every merge but one, which its neighbour takes the place of.
+    /// Removes one merge and puts its neighbour in its place.
     fn lose(list: &mut Buffer<Merge>, at: usize) {
         let mut merges = list.read(list.len()).expect("read");
         merges[at] = merges[at + 1];
@@ -199,10 +202,10 @@ mod tests {
     #[test]
     fn a_volume_that_stayed_behind_is_noticed() {
         let faults: [fn(&mut Tree); 4] = [
-            // A merge that is lost, low and high.
+            // A lost merge, in a treelet and in the top.
             |tree| lose(&mut plan(tree).merges, 3),
             |tree| lose(&mut plan(tree).top, 1),
-            // Rounds or depths that are not done.
+            // Skipped rounds or depths.
             |tree| {
                 let mut treelets = plan(tree).treelets.read(2).expect("read");
                 treelets[1].rounds -= 1;
@@ -219,7 +222,7 @@ mod tests {
         }
     }
 
-    /// The first leaf of a pair is another's: a node is fitted to too many points or too few, or to none.
+    /// The first leaf of a pair is wrong: a node is fitted to too many points, too few, or none.
     #[test]
     fn a_fit_to_other_points_is_noticed() {
         for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
@@ -234,7 +237,7 @@ mod tests {
 
     #[test]
     fn a_ticket_too_early_is_noticed() {
-        // The second block merges the top, of volumes that are not there yet.
+        // The second block merges the top before its volumes exist.
         let error = checked::<Aabb>(Refit::Treelets, |tree| {
             let plan = plan(tree);
             plan.ticket.write(&[u64::from(plan.blocks()) - 2]).expect("written");

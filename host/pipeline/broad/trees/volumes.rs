@@ -20,30 +20,30 @@ pub struct Volumes<V> {
     /// The nodes, in the tree's order.
     pub nodes: Buffer<Node<V>>,
     axes: Axes,
-    /// How much they grow: half the separation, rounded up.
+    /// Growth of the volumes: half the separation, rounded up.
     pub margin: f32,
 }
 
 impl<V: Kernels> Volumes<V> {
-    /// Which axes merged boxes take.
+    /// Returns the choice of axes for merged boxes.
     pub fn axes(&self) -> Axes {
         self.axes
     }
 
-    /// Takes the memory for the volumes of a tree, which hold everything within `margin` of the triangles.
+    /// Allocates the volumes of a tree. They hold everything within `margin` of the triangles.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new(device: &Device, tree: &Tree, (axes, margin): (Axes, f32)) -> Result<Self, Error> {
         let leaves = tree.leaves() + tree.room().others() as usize;
         Ok(Volumes { nodes: device.buffer(2 * leaves)?, axes, margin })
     }
 
-    /// Fits the volumes of the leaves, unless treelets do that in [`Volumes::refit`], and of the nodes of few leaves that
-    /// are not merged.
+    /// Fits the volumes of the leaves, unless treelets do that in [`Volumes::refit`]. Also fits the
+    /// nodes of few leaves, which are not merged.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn fit<R: Precision>(
         &self,
         device: &Device,
@@ -77,15 +77,15 @@ impl<V: Kernels> Volumes<V> {
             root: tree.root(),
             margin: self.margin,
         };
-        // One pair of siblings for each inner node, behind the root.
+        // One pair of siblings per inner node, behind the root.
         let inner = tree.firsts.len() - tree.root().div_ceil(2) as usize;
         launch::each::<entry::fit_groups<R, V>>(device, inner, &args)
     }
 
-    /// Refits all other volumes, the way that the tree was made for; the positions are those of [`Volumes::fit`].
+    /// Refits all other volumes, by the tree's own plan; positions are those of [`Volumes::fit`].
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn refit<R: Precision>(
         &self,
         device: &Device,
@@ -112,7 +112,7 @@ impl<V: Kernels> Volumes<V> {
         }
     }
 
-    /// All volumes, those of the leaves too, in one launch.
+    /// Refits all volumes, leaves included, in one launch.
     fn treelets<R: Precision>(
         &self,
         device: &Device,
@@ -136,8 +136,9 @@ impl<V: Kernels> Volumes<V> {
         launch::blocks::<entry::refit_treelets<R, V>>(device, plan.blocks(), &args)
     }
 
-    /// A launch a level; runs of narrow levels share one: levels of up to four nodes a lane,
-    /// a few hundred nanoseconds each in one block, where a launch costs microseconds.
+    /// Refits by levels, one launch each. Runs of narrow levels share a launch: levels of up to
+    /// four nodes a lane. In one block such a level takes a few hundred nanoseconds, and a launch
+    /// takes microseconds.
     fn levels(&self, device: &Device, tree: &Tree) -> Result<(), Error> {
         let one_block = 4 * entry::refit_levels::<V>::LANES;
         let starts = tree.starts();
@@ -170,23 +171,24 @@ impl<V: Kernels> Volumes<V> {
         Ok(())
     }
 
-    /// The nodes as they lie on the device.
+    /// Downloads the nodes.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn download(&self) -> Result<Vec<Node<V>>, Error> {
         let mut nodes = self.nodes.read(self.nodes.len())?;
-        // Node 0 is not used and nothing writes it; nor, where nothing is grafted, what lies behind the tree.
+        // Node 0 is unused and never written. If nothing is grafted, neither is memory behind the
+        // tree.
         nodes[0] = bytemuck::Zeroable::zeroed();
         Ok(nodes)
     }
 
-    /// Checks the volumes as they lie on the device: leaves against their triangles, merges, and nodes of few leaves against
-    /// the points below them.
-    /// `frames` has the positions that they were fitted to, at t = 0 and, when anything moves, at t = 1.
+    /// Checks the volumes on the device: leaves against their triangles, merges against children,
+    /// and nodes of few leaves against the points below them. `frames` has the positions that they
+    /// were fitted to, at t = 0 and, if anything moves, at t = 1.
     ///
     /// # Errors
-    /// [`Error::Bug`] with the first violation; those of the device.
+    /// [`Error::Bug`] with the first violation; device errors.
     pub fn check<R: Precision>(
         &self,
         tree: &Tree,
@@ -198,7 +200,8 @@ impl<V: Kernels> Volumes<V> {
         self.check_nodes((&tree.download()?, nodes, &leaves), (tree.root(), self.margin), faces, frames)
     }
 
-    /// Checks nodes, the last leaf's the last of them, against the links and the leaves' nodes of their tree.
+    /// Checks nodes against the links and the leaves' nodes of their tree. `nodes` ends with the
+    /// last leaf.
     ///
     /// # Errors
     /// [`Error::Bug`] with the first violation.

@@ -1,22 +1,23 @@
-//! Axes: logarithmic where numbers span decades, with a place for zero below the smallest; round numbers at both ends.
+//! Axes: logarithmic if numbers span decades, with a place for zero below the smallest; round
+//! numbers at both ends.
 
-/// From numbers to pixels.
+/// Map from numbers to pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Axis {
     /// Powers of ten `from..=to`; zero at `from - 1`, if there is a zero.
     Log {
-        /// The lowest.
+        /// Lowest power.
         from: i32,
-        /// The highest.
+        /// Highest power.
         to: i32,
         /// Whether there is a place for zero.
         zero: bool,
     },
-    /// Even steps from `first` to `last` of `digit` times a power of ten.
+    /// Even steps from `first` to `last`, each `digit` times a power of ten.
     Even {
-        /// The least, in steps.
+        /// Lowest value, in steps.
         first: i64,
-        /// The most, in steps.
+        /// Highest value, in steps.
         last: i64,
         /// A step's digit: 1, 2 or 5.
         digit: i64,
@@ -25,12 +26,12 @@ pub enum Axis {
     },
 }
 
-/// Steps of an even axis, about.
+/// Approximate number of steps of an even axis.
 const STEPS: f64 = 6.0;
 
 impl Axis {
-    /// An axis that holds those numbers. Logarithmic, unless one is negative, all are small whole numbers, or those above zero are within
-    /// a decade.
+    /// Returns an axis that holds these numbers. It is logarithmic, except in three cases: one
+    /// number is negative, all are small whole numbers, or those above zero are within a decade.
     pub fn of(values: impl Iterator<Item = f64> + Clone) -> Axis {
         let finite = values.filter(|x| x.is_finite());
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -47,7 +48,7 @@ impl Axis {
         Axis::Log { from, to: (high.log10().ceil() as i32).max(from + 1), zero: low == 0.0 }
     }
 
-    /// Even steps that hold both; of whole numbers whole ones.
+    /// Returns even steps that hold both numbers; whole steps for whole numbers.
     fn even(low: f64, high: f64, whole: bool) -> Axis {
         let (low, high) = match high - low {
             span if span > 0.0 => (low, high),
@@ -62,22 +63,22 @@ impl Axis {
             power += 1;
         }
         let steps = |x: f64| x / (digit as f64 * 10f64.powi(power));
-        // A number on a line stays there.
+        // A number on a grid line stays there.
         let (first, last) = ((steps(low) + 1e-9).floor() as i64, (steps(high) - 1e-9).ceil() as i64);
         Axis::Even { first, last, digit, power }
     }
 
-    /// Whether powers of ten are evenly apart.
+    /// Returns whether the axis is logarithmic.
     pub fn is_log(&self) -> bool {
         matches!(self, Axis::Log { .. })
     }
 
-    /// What the axis shows, and that it is logarithmic where it is.
+    /// Returns the axis's name, with "log scale" if it is logarithmic.
     pub fn named(&self, what: &str) -> String {
         if self.is_log() { format!("{what}, log scale") } else { what.to_owned() }
     }
 
-    /// Where a number is, from 0 to 1.
+    /// Returns the place of a number, from 0 to 1.
     pub fn part(&self, x: f64) -> f64 {
         match *self {
             Axis::Log { from, to, zero } => {
@@ -92,7 +93,7 @@ impl Axis {
         }
     }
 
-    /// Where to draw lines, with what beside them: at most ten.
+    /// Returns the places of grid lines with their labels: at most ten.
     pub fn ticks(&self) -> Vec<(f64, String)> {
         match *self {
             Axis::Log { from, to, zero } => {
@@ -123,7 +124,8 @@ impl Axis {
 mod tests {
     use super::*;
 
-    /// Ticks that are not 0 and not 1, 2 or 5 times a power of ten apart, or on a logarithmic axis no power of ten.
+    /// Returns the ticks that are not round: neither 0 nor a multiple of 1, 2 or 5 times a power of
+    /// ten. On a logarithmic axis only powers of ten are round.
     fn not_round(axis: &Axis, ticks: &[(f64, String)]) -> Vec<f64> {
         let power = |x: f64| (x.log10() - x.log10().round()).abs() < 1e-6;
         let above = ticks.iter().map(|tick| tick.0);
@@ -172,7 +174,7 @@ mod tests {
             }
             value *= 1.37;
         }
-        // What this checker is for.
+        // The checker must notice ticks that are not round.
         let axis = Axis::of([1.0, 1.3].into_iter());
         let bad = [1.0, 1.06, 1.12].map(|x| (x, String::new()));
         assert_eq!(not_round(&axis, &bad).len(), 2);

@@ -1,4 +1,4 @@
-//! Curves, each named at its end; and bars.
+//! Curves, each with a name at its end; and bars.
 
 use super::axis::Axis;
 use super::style::Style;
@@ -11,68 +11,69 @@ use nearmiss::error::Error;
 
 /// A curve.
 pub struct Curve {
-    /// What it is of.
+    /// Name of the series.
     pub label: String,
-    /// How it looks.
+    /// Line and mark style.
     pub style: Style,
-    /// Where it runs.
+    /// Points of the curve.
     pub points: Vec<(f64, f64)>,
 }
 
-/// Curves that share a frame.
+/// Curves in one frame.
 pub struct Chart {
-    /// What they show.
+    /// Title.
     pub title: String,
-    /// Over what.
+    /// Name of the x axis.
     pub x: String,
     /// The curves.
     pub curves: Vec<Curve>,
 }
 
-/// Charts beside each other, of one input.
+/// Charts of one input, in a row.
 pub struct Group {
     /// The input.
     pub title: String,
-    /// A chart a quantity: in every group the same, in the same order.
+    /// One chart per quantity: the same in every group, in the same order.
     pub charts: Vec<Chart>,
 }
 
-/// Height of a frame, and of what a chart has besides.
+/// Height of a frame, and of the rest of a chart.
 const FRAME: i32 = 150;
 const CHART: i32 = 68;
 /// Height of a group's title.
 const TITLE: i32 = 28;
-/// Width of a chart, and where its frame begins and ends; names stand to the right.
+/// Width of a chart, and the left and right sides of its frame; names are to its right.
 const CELL: i32 = 460;
 const BEGIN: i32 = 64;
 const END: i32 = 310;
 
-/// The picture: a row a group, a column a quantity that one of them tells; groups of few charts stand side by side.
+/// Draws the picture: a row per group, and a column per quantity that has values. Groups of few
+/// charts share a row.
 ///
 /// # Errors
-/// [`Error::Bug`] where it cannot be drawn.
+/// [`Error::Bug`] if it cannot be drawn.
 pub fn charts(title: &str, device: &str, all: &[Group]) -> Result<String, Error> {
-    // One place on an axis is no curve, and a chart of zeros tells nothing.
-    let tells = |chart: &Chart| {
+    // A curve needs two places on its axis, and a chart of zeros is left out.
+    let has_values = |chart: &Chart| {
         let mut points = chart.curves.iter().flat_map(|curve| &curve.points);
         let is_any = points.clone().any(|point| point.1 != 0.0);
         is_any && points.next().is_some_and(|first| points.any(|other| other.0 != first.0))
     };
-    let told = |group: &Group| (0..group.charts.len()).filter(|at| tells(&group.charts[*at])).collect();
-    let told: Vec<(&Group, Vec<usize>)> = all.iter().map(|group| (group, told(group))).collect();
-    let mut columns: Vec<usize> = told.iter().flat_map(|(_, charts)| charts).copied().collect();
+    let drawn = |group: &Group| (0..group.charts.len()).filter(|at| has_values(&group.charts[*at])).collect();
+    let drawn: Vec<(&Group, Vec<usize>)> = all.iter().map(|group| (group, drawn(group))).collect();
+    let mut columns: Vec<usize> = drawn.iter().flat_map(|(_, charts)| charts).copied().collect();
     columns.sort_unstable();
     columns.dedup();
     let column = |chart: usize| columns.partition_point(|other| *other < chart) as i32;
     let widths: Vec<i32> =
-        told.iter().map(|(_, charts)| charts.last().map_or(0, |last| column(*last) + 1)).collect();
+        drawn.iter().map(|(_, charts)| charts.last().map_or(0, |last| column(*last) + 1)).collect();
     let places = side_by_side(&widths, columns.len() as i32);
     let rows = places.last().map_or(0, |place| place[1] + 1);
     let high = TITLE + FRAME + CHART;
     let size = [(CELL * columns.len() as i32).max(WIDTH), head_height(1) + high * rows];
     wide_sheet(size, |sheet| {
         let top = sheet.head(title, &[(format!("nearmiss on {device}"), INK)])?;
-        for ((group, charts), [first, row]) in told.iter().zip(places).filter(|(of, _)| !of.1.is_empty()) {
+        for ((group, charts), [first, row]) in drawn.iter().zip(places).filter(|(of, _)| !of.1.is_empty()) {
             let (x, y) = (CELL * first, top + high * row);
             sheet.bold(&group.title, (x + 20, y + 12), 14)?;
             for &at in charts {
@@ -84,7 +85,8 @@ pub fn charts(title: &str, device: &str, all: &[Group]) -> Result<String, Error>
     })
 }
 
-/// Where groups of those widths begin, column and row: each beside the one before it where there is room.
+/// Returns the column and row of each group of these widths; a group is in the row of the one
+/// before it if there is room.
 fn side_by_side(widths: &[i32], columns: i32) -> Vec<[i32; 2]> {
     let mut next = [0, 0];
     let place = |wide: &i32| {
@@ -98,7 +100,7 @@ fn side_by_side(widths: &[i32], columns: i32) -> Vec<[i32; 2]> {
     widths.iter().map(place).collect()
 }
 
-/// A frame with its lines and the numbers at them; from a point to pixels.
+/// Draws a frame with its lines and their numbers. Returns the map from a point to pixels.
 pub fn frame(
     sheet: &Sheet,
     (x, y): (&Axis, &Axis),
@@ -142,7 +144,7 @@ fn chart(sheet: &Sheet, chart: &Chart) -> Drawn {
         let line: Vec<(i32, i32)> = sorted.into_iter().map(&at).collect();
         let Some(&end) = line.last() else { continue };
         let Style { colour, mark, dashed } = curve.style;
-        // Those that come later lie inside those before, where they run together.
+        // Curves that coincide are drawn with decreasing width, later ones inside.
         let over = chart.curves.len() - 1 - place;
         let width = 2 + (3 * over / 2).min(8);
         let marks = line.clone();
@@ -163,10 +165,11 @@ fn chart(sheet: &Sheet, chart: &Chart) -> Drawn {
     labels::draw(sheet, ends, END + 34, last + 8)
 }
 
-/// Bars on a logarithmic scale, each with its number and, where it has some, milliseconds: a panel an input.
+/// Draws bars on a logarithmic scale, each with its number and, if known, its milliseconds: a panel
+/// per input.
 ///
 /// # Errors
-/// [`Error::Bug`] where it cannot be drawn.
+/// [`Error::Bug`] if it cannot be drawn.
 #[allow(clippy::type_complexity, reason = "a panel is its title and its bars, here alone")]
 pub fn bars(
     title: &str,
@@ -231,7 +234,7 @@ mod tests {
             assert!(svg.contains(text), "{text}: {svg}");
         }
         assert!(!svg.contains("no curve"), "{svg}");
-        // Nor is there a place for it.
+        // There is no place for it either.
         assert!(svg.contains("width=\"900\""), "{svg}");
         assert_eq!(faults(&svg), Vec::<String>::new());
         let panel = (

@@ -1,4 +1,4 @@
-//! The pictures: what to choose, and what it costs.
+//! Pictures of the choices and their costs.
 
 mod axis;
 mod chart;
@@ -13,13 +13,14 @@ use chart::{Chart, Curve, Group, charts};
 use nearmiss::error::Error;
 pub use pareto::pareto;
 
-/// What a picture is drawn of: its name, and how to read it off a row.
+/// A quantity to draw: its name, and its value in a row.
 type Quantity = (&'static str, fn(&Row) -> f64);
 
-/// How early times are, and what an answer costs, over the tolerance: a chart an input and quantity.
+/// Draws earliness of times, and cost of an answer, over the tolerance: a chart per input and
+/// quantity.
 ///
 /// # Errors
-/// [`Error::Bug`] where it cannot be drawn.
+/// [`Error::Bug`] if it cannot be drawn.
 pub fn tolerance(device: &str, rows: &[Row]) -> Result<String, Error> {
     let with: Vec<&Row> =
         rows.iter().filter(|row| row.tolerance_edges.is_some_and(|t| t > 0.0) && is_plain(row)).collect();
@@ -41,19 +42,20 @@ pub fn tolerance(device: &str, rows: &[Row]) -> Result<String, Error> {
     charts("The tolerance: sharper times cost boxes", device, &all)
 }
 
-/// Whether nothing but solver and tolerance was chosen.
+/// Returns whether a row has defaults for everything except solver and tolerance.
 fn is_plain(row: &Row) -> bool {
     let default = nearmiss::query::Bv::default_for(nearmiss::query::QueryKind::Continuous).name();
     row.bv.is_none_or(|bv| bv == default) && (row.bv.is_some() || row.precision == "f64")
 }
 
-/// Wrong answers over the offset, the scale and the degeneracy, and the boxes of the last: a chart a sweep.
+/// Draws wrong answers over the offset, the scale and the degeneracy, and boxes over the
+/// degeneracy: a chart per sweep.
 ///
 /// # Errors
-/// [`Error::Bug`] where it cannot be drawn.
+/// [`Error::Bug`] if it cannot be drawn.
 pub fn sweeps(device: &str, rows: &[Row]) -> Result<String, Error> {
     let mut sorted: Vec<&Row> = rows.iter().collect();
-    // Sweeps come in one piece each; within one, a curve a choice.
+    // Each sweep's rows become adjacent; a sweep has one curve per choice.
     sorted.sort_by_key(|row| rows.iter().position(|other| other.input == row.input));
     let mut all = Vec::new();
     for rows in sorted.chunk_by(|a, b| a.input == b.input) {
@@ -75,10 +77,10 @@ pub fn sweeps(device: &str, rows: &[Row]) -> Result<String, Error> {
     charts("Far away, large and small, degenerate", device, &all)
 }
 
-/// Pairs left by each step.
+/// Draws the pairs that each step leaves.
 ///
 /// # Errors
-/// [`Error::Bug`] where it cannot be drawn.
+/// [`Error::Bug`] if it cannot be drawn.
 pub fn funnel(device: &str, rows: &[FunnelRow]) -> Result<String, Error> {
     let panel = |rows: &[FunnelRow]| {
         let bar = |row: &FunnelRow| (row.step.to_owned(), row.pairs as f64, row.ms);
@@ -88,10 +90,10 @@ pub fn funnel(device: &str, rows: &[FunnelRow]) -> Result<String, Error> {
     chart::bars("The funnel: pairs that each step leaves, and its time", device, &panels)
 }
 
-/// Tests of a refitted tree over those of a fresh one.
+/// Draws the tests of a refitted tree relative to those of a fresh one.
 ///
 /// # Errors
-/// [`Error::Bug`] where it cannot be drawn.
+/// [`Error::Bug`] if it cannot be drawn.
 pub fn refit(device: &str, rows: &[RefitRow]) -> Result<String, Error> {
     let chart = |of: &[RefitRow]| {
         let quantity = |label: &str, of_row: fn(&RefitRow) -> f64| Curve {
@@ -113,7 +115,7 @@ pub fn refit(device: &str, rows: &[RefitRow]) -> Result<String, Error> {
     charts("Refitting: what it costs in quality", device, &all)
 }
 
-/// A curve a solver.
+/// Returns one curve per solver.
 fn curves(rows: &[&Row], x: impl Fn(&Row) -> f64, y: impl Fn(&Row) -> f64) -> Vec<Curve> {
     let mut all: Vec<Curve> = Vec::new();
     for row in rows {
@@ -167,7 +169,7 @@ mod tests {
                 );
             }
         }
-        // No curve of one solver has another's colour.
+        // One solver has one colour, and no other solver has it.
         let one: Vec<&Row> = rows.iter().filter(|row| row.solver == Solver::CubicF32).collect();
         let drawn = curves(&one, |_| 0.0, |_| 0.0);
         assert!(drawn.len() == 1 && drawn[0].style == style::of(Solver::CubicF32));

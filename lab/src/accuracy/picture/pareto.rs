@@ -1,5 +1,6 @@
-//! What to choose: time against what it buys, a mark a choice. Choices that can give wrong answers are hollow, with the
-//! counts of those they gave; a line leads along those of the others that no other beats in both, which are named.
+//! Time against accuracy, one mark per choice. Choices that can give wrong answers are hollow, with
+//! the counts of those answers. A line joins the Pareto front of the other choices, which are
+//! named.
 
 use super::Quantity;
 use super::axis::Axis;
@@ -12,15 +13,15 @@ use nearmiss::error::Error;
 use nearmiss::query::Solver;
 use plotters::style::{RGBColor, WHITE};
 
-/// Height of a frame, and of what a panel has besides.
+/// Height of a frame, and of the rest of a panel.
 const FRAME: i32 = 220;
 const PANEL: i32 = 88;
-/// Width of a panel, and where its frame begins and ends.
+/// Width of a panel, and the left and right sides of its frame.
 const CELL: i32 = 800;
 const BEGIN: i32 = 64;
 const END: i32 = 765;
 
-/// The line along what is best.
+/// The line along the Pareto front.
 const STEPS: RGBColor = RGBColor(178, 190, 200);
 
 /// One mark.
@@ -30,29 +31,32 @@ struct Event<'a> {
     y: f64,
 }
 
-/// The quantities: less is better.
+/// The quantities; lower is better.
 const QUANTITIES: [Quantity; 2] = [
     ("false alarms, per million pairs", |row| row.false_alarms as f64 * 1e6 / row.cases.max(1) as f64),
     ("99 % of times early by at most, in mean edges", |row| row.early_edges_p99),
 ];
 
-/// The picture: of whole scenes milliseconds a frame, of single questions nanoseconds a pair. A row an input, a column a quantity.
+/// Draws the picture, a row per input, a column per quantity. Time is milliseconds per frame for
+/// whole scenes, and nanoseconds per pair for single cases.
 ///
 /// # Errors
-/// [`Error::Bug`] where it cannot be drawn.
+/// [`Error::Bug`] if it cannot be drawn.
 pub fn pareto(device: &str, rows: &[Row]) -> Result<String, Error> {
-    // A panel of zeros tells nothing.
-    let tells = |rows: &[Row], (_, of): &Quantity| rows.iter().any(|row| of(row) > 0.0);
-    let is_drawn = |rows: &&[Row]| rows.len() > 2 && QUANTITIES.iter().any(|of| tells(rows, of));
+    // A panel of zeros is left out.
+    let has_values = |rows: &[Row], (_, of): &Quantity| rows.iter().any(|row| of(row) > 0.0);
+    let is_drawn = |rows: &&[Row]| rows.len() > 2 && QUANTITIES.iter().any(|of| has_values(rows, of));
     let inputs: Vec<&[Row]> = rows.chunk_by(|a, b| a.input == b.input).filter(is_drawn).collect();
     let size = [CELL * QUANTITIES.len() as i32, head_height(3) + (FRAME + PANEL) * inputs.len() as i32];
     wide_sheet(size, |sheet| {
         let hollow = "hollow: can miss and be late, and how many missed + late; on the line: cannot, and none better in both";
         let notes = [(format!("nearmiss on {device}"), INK), (hollow.into(), FAINT), (String::new(), INK)];
-        let mut y = sheet.head("What to choose: left is faster, lower is better", &notes)?;
+        let mut y = sheet.head("Choices: left is faster, lower is better", &notes)?;
         legend(sheet, &inputs, y - 18)?;
         for rows in inputs {
-            for (column, quantity) in QUANTITIES.into_iter().enumerate().filter(|(_, of)| tells(rows, of)) {
+            for (column, quantity) in
+                QUANTITIES.into_iter().enumerate().filter(|(_, of)| has_values(rows, of))
+            {
                 panel(&sheet.part((CELL * column as i32, y), (CELL, FRAME + PANEL)), rows, quantity)?;
             }
             y += FRAME + PANEL;
@@ -61,15 +65,16 @@ pub fn pareto(device: &str, rows: &[Row]) -> Result<String, Error> {
     })
 }
 
-/// Rows that are drawn: how positions of single questions are stored changes no answer, and such a mark would hide another.
-fn asked(rows: &[Row]) -> impl Iterator<Item = &Row> {
+/// Returns the rows to draw. The storage of single cases changes no answer, and such a mark would
+/// hide another.
+fn drawn(rows: &[Row]) -> impl Iterator<Item = &Row> {
     rows.iter().filter(|row| row.bv.is_some() || row.precision == "f64")
 }
 
-/// The solvers' colours, in a line.
+/// Draws the solvers' colours, in a line.
 fn legend(sheet: &Sheet, inputs: &[&[Row]], y: i32) -> Drawn {
     let mut x = 24;
-    let is_drawn = |of: &Solver| inputs.iter().any(|rows| asked(rows).any(|row| row.solver == *of));
+    let is_drawn = |of: &Solver| inputs.iter().any(|rows| drawn(rows).any(|row| row.solver == *of));
     for solver in Solver::ALL.into_iter().filter(is_drawn) {
         let name = solver.name();
         let style = style::of(solver);
@@ -80,12 +85,13 @@ fn legend(sheet: &Sheet, inputs: &[&[Row]], y: i32) -> Drawn {
     Ok(())
 }
 
-/// Whether answers may be relied on: by proof, and not by these counts alone, which must not speak against it.
+/// Returns whether answers are reliable: the solver has a proof, and the counts show no wrong
+/// answer.
 fn is_sure(row: &Row) -> bool {
     row.solver.is_certain() && !row.is_wrong()
 }
 
-/// Those to rely on that no other such beats in both.
+/// Returns the reliable choices that no other reliable one beats in both quantities.
 fn best<'a>(marks: &'a [Event]) -> impl Iterator<Item = &'a Event<'a>> {
     let right = |mark: &&Event| is_sure(mark.row);
     let beaten = move |mark: &Event| {
@@ -99,7 +105,7 @@ fn panel(sheet: &Sheet, rows: &[Row], (what, of): Quantity) -> Drawn {
     let frames = rows.iter().any(|row| row.ms.is_some());
     let time = |row: &Row| if frames { row.ms } else { row.ns };
     let marks: Vec<Event> =
-        asked(rows).filter_map(|row| Some(Event { row, x: time(row)?, y: of(row) })).collect();
+        drawn(rows).filter_map(|row| Some(Event { row, x: time(row)?, y: of(row) })).collect();
     let (xs, ys): (Vec<f64>, Vec<f64>) = marks.iter().map(|m| (m.x, m.y)).unzip();
     let (xs, ys) = (Axis::of(xs.into_iter()), Axis::of(ys.into_iter()));
     sheet.bold(&ys.named(&format!("{}: {what}", rows[0].input)), (20, 12), 14)?;
@@ -125,7 +131,7 @@ fn panel(sheet: &Sheet, rows: &[Row], (what, of): Quantity) -> Drawn {
     let inside = Area { low: [BEGIN + 2, first + 1], high: [END + 25, last - 1] };
     let found = places(&names, &areas, &inside);
     for ((mark, name), found) in named.iter().zip(found) {
-        // Where nothing is free the name is left out: the rows are in the file beside.
+        // A name without a free place is left out: the CSV file has the rows.
         let Some(found) = found else { continue };
         let colour = style::of(mark.row.solver).colour;
         let [[left, top], [right, bottom]] = [found.area.low, found.area.high];
@@ -135,7 +141,7 @@ fn panel(sheet: &Sheet, rows: &[Row], (what, of): Quantity) -> Drawn {
         }
         let ink = if is_sure(mark.row) { INK } else { FAINT };
         let y = (top + bottom) / 2;
-        // Towards its mark.
+        // Aligned towards its mark.
         let (x, at) = if right < place(mark)[0] { (right - 1, At::Right) } else { (left + 1, At::Left) };
         sheet.text(name, (x, y), SIZE, at, ink)?;
     }

@@ -1,5 +1,5 @@
-//! Names beside crowded marks: each in the nearest free place, with a line to its mark where that is not right beside it. No name covers a
-//! mark, another name or a line.
+//! Places names next to crowded marks: each in the nearest free place. A name that is not adjacent
+//! to its mark has a line to it. No name covers a mark, another name or a line.
 
 use crate::tables::picture::width;
 
@@ -13,7 +13,7 @@ pub struct Area {
 }
 
 impl Area {
-    /// Around a point.
+    /// Returns the square around a point.
     pub fn around([x, y]: [i32; 2], half: i32) -> Area {
         Area { low: [x - half, y - half], high: [x + half, y + half] }
     }
@@ -26,7 +26,7 @@ impl Area {
         (0..2).all(|k| self.low[k] <= other.low[k] && other.high[k] <= self.high[k])
     }
 
-    /// Whether a line passes through it.
+    /// Returns whether a line passes through it.
     fn is_crossed(&self, [from, to]: [[i32; 2]; 2]) -> bool {
         (0..=32).any(|part| {
             let at = [0, 1].map(|k| from[k] + (to[k] - from[k]) * part / 32);
@@ -35,21 +35,21 @@ impl Area {
     }
 }
 
-/// Where a name stands: its area, and the line to its mark.
+/// Place of a name: its area, and the line to its mark.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// Of the text.
+    /// Area of the text.
     pub area: Area,
-    /// From the mark to the text.
+    /// Line from the mark to the text.
     pub line: Option<[[i32; 2]; 2]>,
 }
 
-/// Height of a name, and its size as a text.
+/// Height of a name, and its font size.
 const HEIGHT: i32 = 14;
 pub const SIZE: i32 = 11;
-/// Distances from a mark that are tried, pixels; of the first no line is drawn.
+/// Distances from a mark to try, in pixels; the first one needs no line.
 const APART: [i32; 10] = [9, 18, 28, 38, 50, 64, 80, 98, 118, 140];
-/// Directions that are tried, in hundredths.
+/// Directions to try, in hundredths.
 const AROUND: [[i32; 2]; 14] = [
     [100, 0],
     [-100, 0],
@@ -67,8 +67,9 @@ const AROUND: [[i32; 2]; 14] = [
     [-34, 94],
 ];
 
-/// Places inside `frame` for names of marks, in their order; none where there is none. `marks` are all marks' areas. Names may take places
-/// from each other, so they are tried from the first, from the last and from the left.
+/// Returns places inside `frame` for the names of marks, in their order; `None` for a name without
+/// a free place. `marks` has the areas of all marks. Names compete for places, so three orders are
+/// tried: from the first, from the last, and from the left.
 pub fn places(names: &[([i32; 2], String)], marks: &[Area], frame: &Area) -> Vec<Option<Place>> {
     let mut orders: [Vec<usize>; 3] = std::array::from_fn(|_| (0..names.len()).collect());
     orders[1].reverse();
@@ -116,7 +117,7 @@ fn one_by_one(names: &[([i32; 2], String)], marks: &[Area], frame: &Area) -> Vec
     all
 }
 
-/// Whether two lines cross.
+/// Returns whether two lines cross.
 fn cross([a, b]: [[i32; 2]; 2], [c, d]: [[i32; 2]; 2]) -> bool {
     let side = |p: [i32; 2], q: [i32; 2], r: [i32; 2]| {
         ((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])).signum()
@@ -128,7 +129,7 @@ fn cross([a, b]: [[i32; 2]; 2], [c, d]: [[i32; 2]; 2]) -> bool {
 mod tests {
     use super::*;
 
-    /// What is wrong with places: names over names, over marks and over lines.
+    /// Returns the faults of places: names over names, over marks and over lines.
     fn faults(places: &[Place], marks: &[Area]) -> Vec<(usize, &'static str)> {
         let mut found = Vec::new();
         for (at, one) in places.iter().enumerate() {
@@ -155,7 +156,7 @@ mod tests {
         assert!(found.len() == 12, "{} of 12 names have a place", found.len());
         assert_eq!(faults(&found, &marks), []);
         assert!(found.iter().all(|place| frame.holds(&place.area)));
-        // What this checker is for.
+        // The checker must notice a name over a name, and one over a mark.
         let mut bad = found.clone();
         bad[2].area = bad[7].area;
         assert!(faults(&bad, &marks).contains(&(2, "a name")));
@@ -165,7 +166,7 @@ mod tests {
 
     #[test]
     fn names_give_way_to_others() {
-        // The first would stand over the second, which can go nowhere else.
+        // The first name would cover the second, which has no other place.
         let frame = Area { low: [0, 0], high: [260, 60] };
         let names =
             [([60, 50], "cubic-f64: 0 + 0".to_owned()), ([20, 50], "certified-f64 1e-4 linear".to_owned())];

@@ -1,21 +1,24 @@
-//! How a series looks: of a solver the same in every picture. No two look alike, in grey neither: marks differ too.
+//! Styles of series: a solver has the same style in every picture. No two look alike, even in grey:
+//! their marks differ too.
 
 use crate::tables::picture::{FAINT, INK, Mark};
 use nearmiss::query::Solver;
 use plotters::style::RGBColor;
 
-/// A colour, a mark at each point, and whether the line is dashed and the mark hollow: of what can miss.
+/// A colour, a mark at each point, and whether the line is dashed and the mark hollow, for solvers
+/// that can miss.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Style {
-    /// Of line and mark.
+    /// Colour of line and mark.
     pub colour: RGBColor,
-    /// The mark's shape.
+    /// Shape of the mark.
     pub mark: Mark,
-    /// Whether it is dashed and hollow.
+    /// Whether the line is dashed and the mark hollow.
     pub dashed: bool,
 }
 
-/// A solver's. Colours are those of Okabe and Ito, which people tell apart who see colours differently.
+/// Returns a solver's style. Colours are those of Okabe and Ito, which remain distinct to
+/// colour-blind readers.
 pub fn of(solver: Solver) -> Style {
     let (colour, mark) = match solver {
         Solver::Certified => (RGBColor(0, 114, 178), Mark::Disc),
@@ -26,13 +29,13 @@ pub fn of(solver: Solver) -> Style {
         Solver::Exact => (RGBColor(204, 121, 167), Mark::Disc),
         Solver::Moller => (RGBColor(120, 110, 40), Mark::Square),
         Solver::Bounded => (RGBColor(120, 60, 160), Mark::Diamond),
-        // One that is new: give it its own.
+        // A new solver: give it a style of its own.
         _ => (INK, Mark::Disc),
     };
     Style { colour, mark, dashed: !solver.is_certain() }
 }
 
-/// Of two series that are no solvers.
+/// Returns the styles of two series that are no solvers.
 pub fn plain(second: bool) -> Style {
     if second {
         Style { colour: FAINT, mark: Mark::Square, dashed: true }
@@ -45,7 +48,7 @@ pub fn plain(second: bool) -> Style {
 mod tests {
     use super::*;
 
-    /// Pairs of series with nearly the same colour.
+    /// Returns pairs of series with nearly the same colour.
     fn alike(series: &[(&'static str, Style)]) -> Vec<[&'static str; 2]> {
         let mut found = Vec::new();
         for (at, (name, one)) in series.iter().enumerate() {
@@ -64,14 +67,14 @@ mod tests {
     fn no_two_solvers_look_alike() {
         let all = Solver::ALL.map(|solver| (solver.name(), of(solver)));
         assert_eq!(alike(&all), Vec::<[&str; 2]>::new());
-        // Those that stand in one picture differ by their marks as well.
+        // Solvers in one picture differ by their marks as well.
         let moving = Solver::ALL.into_iter().filter(|of| of.answers(nearmiss::query::QueryKind::Continuous));
         let marks: Vec<Mark> = moving.map(|solver| of(solver).mark).collect();
         assert!(
             marks.len() > 4 && marks.iter().enumerate().all(|(at, mark)| !marks[at + 1..].contains(mark))
         );
         assert!(of(Solver::CubicF32).dashed && !of(Solver::Certified).dashed);
-        // What this checker is for.
+        // The checker must notice two equal colours.
         let mut bad = all;
         bad[1].1.colour = bad[4].1.colour;
         assert_eq!(alike(&bad), [[bad[1].0, bad[4].0]]);

@@ -1,4 +1,4 @@
-//! Numbers `n / 2^k`: what a finite f64 is, and the middle of two of them.
+//! Numbers `n / 2^k`: finite f64 values, and midpoints of such numbers.
 
 use num_bigint::BigInt;
 use num_rational::BigRational;
@@ -13,15 +13,15 @@ pub struct Dyadic {
     pub k: u64,
 }
 
-/// A finite f64 as `mantissa * 2^exponent`, the mantissa odd or zero.
+/// Splits a finite f64 into `mantissa * 2^exponent`, the mantissa odd or zero.
 fn parts(x: f64) -> (BigInt, i64) {
-    assert!(x.is_finite(), "the oracle is asked about finite numbers, not {x}");
+    assert!(x.is_finite(), "the oracle needs finite numbers, got {x}");
     let (mantissa, exponent, sign) = FloatCore::integer_decode(x);
     let shift = if mantissa == 0 { 0 } else { mantissa.trailing_zeros() };
     (BigInt::from(mantissa >> shift) * sign, i64::from(exponent) + i64::from(shift))
 }
 
-/// The numbers as integers: all times one power of two, the smallest that does it.
+/// Returns the numbers as integers: all times one power of two, the smallest that suffices.
 pub fn integers<const N: usize>(x: [f64; N]) -> [BigInt; N] {
     let parts = x.map(parts);
     let least = parts.iter().filter(|p| !p.0.is_zero()).map(|p| p.1).min().unwrap_or(0);
@@ -29,7 +29,7 @@ pub fn integers<const N: usize>(x: [f64; N]) -> [BigInt; N] {
 }
 
 impl Dyadic {
-    /// The number that a finite f64 is.
+    /// Returns the value of a finite f64.
     pub fn of(x: f64) -> Dyadic {
         let (n, exponent) = parts(x);
         if exponent < 0 {
@@ -39,13 +39,13 @@ impl Dyadic {
         }
     }
 
-    /// Both numerators over the larger of both denominators, and its power.
+    /// Returns both numerators over the larger denominator, and its power.
     pub fn aligned(&self, other: &Dyadic) -> (BigInt, BigInt, u64) {
         let k = self.k.max(other.k);
         (&self.n << (k - self.k), &other.n << (k - other.k), k)
     }
 
-    /// The number half way.
+    /// Returns the midpoint.
     pub fn middle(&self, other: &Dyadic) -> Dyadic {
         let (a, b, k) = self.aligned(other);
         let n = a + b;
@@ -53,7 +53,7 @@ impl Dyadic {
         Dyadic { n: n >> spare, k: k + 1 - spare }
     }
 
-    /// Whether the numbers are nearer than `2^-bits`.
+    /// Returns whether the numbers are nearer than `2^-bits`.
     pub fn within(&self, other: &Dyadic, bits: u64) -> bool {
         let (a, b, k) = self.aligned(other);
         let gap = (b - a).magnitude().clone();

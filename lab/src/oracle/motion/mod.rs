@@ -1,23 +1,25 @@
-//! Whether and when first the features of a [`Case`] meet: exactly.
+//! Decides whether the features of a [`Case`] meet, and when first: exactly.
 //!
 //! # Method
 //!
-//! Write the four points at time t as columns `(x, y, z, 1)`, linear in t. The features share a point where some weights
-//! that are not all zero, none negative for the first feature's points and none positive for the second's, add the
-//! columns up to zero: Radon's theorem. Which sums of the columns vanish, and with which signs, is told by the signs of
-//! the minors of that matrix: 18 linear, 12 quadratic and one cubic polynomial of t, with integer coefficients once all
-//! coordinates are scaled by a power of two. So whether the features meet is constant between two roots of these, and,
-//! since it holds on a closed set of times, it begins to hold at t = 0 or at one of the roots (at one of the cubic's
-//! alone, unless the cubic is zero throughout: features only meet where the four points span no volume). The roots
-//! are isolated by Descartes' rule and visited in ascending order; at each the signs of the minors are decided, by
-//! narrowing the root until they are plain, or as zero by a common divisor. There is no tolerance and no rounding, and no
-//! motion is a special case: parallel, in one plane, along a line, standing still, faces without area, edges that are
-//! points.
+//! Write the four points at time t as columns `(x, y, z, 1)`, linear in t. The features share a
+//! point if some weights, not all zero, add the columns up to zero. No weight is negative for the
+//! first feature's points, and none is positive for the second's: Radon's theorem. The signs of the
+//! minors of that matrix decide which sums of the columns vanish, and with which signs. These are
+//! 18 linear, 12 quadratic and one cubic polynomial of t. Their coefficients are integers once all
+//! coordinates are scaled by a power of two. So between two roots of these polynomials, whether the
+//! features meet is constant. Since it holds on a closed set of times, it begins to hold at t = 0
+//! or at one of the roots. Only roots of the cubic count, unless the cubic is zero throughout:
+//! features only meet if the four points span no volume. The roots are isolated by Descartes' rule
+//! and visited in ascending order. At each root the signs of the minors are decided: by narrowing
+//! the root until they are clear, or as zero by a common divisor. There is no tolerance and no
+//! rounding. No motion is a special case: parallel, coplanar, collinear, at rest, faces without
+//! area, edges that are points.
 //!
 //! # Cost
 //!
-//! About 0.1 ms for coordinates of one magnitude, a millisecond for motion in a plane; more bits cost more, to about a
-//! tenth of a second where magnitudes span all of f64.
+//! About 0.1 ms for coordinates of one magnitude, a millisecond for coplanar motion. More bits cost
+//! more, up to about a tenth of a second if magnitudes span all of f64.
 
 mod dyadic;
 mod place;
@@ -33,7 +35,8 @@ use place::Minors;
 use root::Root;
 use std::cmp::Ordering;
 
-/// The first time in [0, 1] at which the closed features share a point; `None` if they never do.
+/// Returns the first time in [0, 1] at which the closed features share a point; `None` if they
+/// never do.
 ///
 /// # Panics
 /// For coordinates that are not finite.
@@ -41,7 +44,8 @@ pub fn first_contact(case: &Case) -> Option<Toi> {
     first_contact_until(case, 1.0)
 }
 
-/// As [`first_contact`], in [0, `end`]; `None` for a negative end. The points keep their pace after t = 1.
+/// As [`first_contact`], in [0, `end`]; `None` for a negative end. The points keep their velocity
+/// after t = 1.
 ///
 /// # Panics
 /// For coordinates or an end that are not finite.
@@ -56,22 +60,23 @@ pub fn first_contact_until(case: &Case, end: f64) -> Option<Toi> {
     std::iter::once(Root::at(zero)).chain(roots).find_map(|mut at| minors.meet(&mut at).then_some(Toi(at)))
 }
 
-/// Whether the closed features share a point at time `t`.
+/// Returns whether the closed features share a point at time `t`.
 ///
 /// # Panics
 /// For coordinates or a time that are not finite, or a negative time.
 pub fn meet_at(case: &Case, t: f64) -> bool {
-    assert!(t >= 0.0, "a motion begins at 0, and {t} is before");
+    assert!(t >= 0.0, "time must be at least 0, got {t}");
     Minors::new(case).meet(&mut Root::at(Dyadic::of(t)))
 }
 
-/// A time of impact: an algebraic number of degree three at most, known exactly. Ordered as numbers are.
+/// A time of impact: an algebraic number of degree three at most, known exactly. Ordered as numbers
+/// are.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Toi(Root);
 
 impl Toi {
-    /// Two fractions, the time between them or equal to both, nearer to each other than `2^-bits`. About a microsecond a
-    /// bit.
+    /// Returns two fractions that enclose the time, or equal it, nearer to each other than
+    /// `2^-bits`. About a microsecond a bit.
     pub fn within(&self, bits: u32) -> (BigRational, BigRational) {
         let mut root = self.0.clone();
         root.narrow_to(u64::from(bits));
@@ -79,7 +84,7 @@ impl Toi {
         (low.ratio(), high.ratio())
     }
 
-    /// The time against a number: `Less` where it is before `x`, so that an answer `x` is late.
+    /// Compares the time with a number: `Less` if it is before `x`, so that an answer `x` is late.
     ///
     /// # Panics
     /// If `x` is NaN.
@@ -92,9 +97,11 @@ impl Toi {
         }
     }
 
-    /// The largest f64 that is not after the time, and the smallest that is not before it: the same where the time is one.
+    /// Returns the largest f64 that is not after the time, and the smallest that is not before it.
+    /// They are equal if the time is an f64.
     pub fn bracket(&self) -> (f64, f64) {
-        // The bits of numbers from 0 ascend as they do: halve. 0 is never after the time.
+        // The bits of numbers from 0 on ascend as the numbers do: bisect. 0 is never after the
+        // time.
         let (mut low, mut high) = (0, f64::INFINITY.to_bits());
         while high - low > 1 {
             let middle = low + (high - low) / 2;
@@ -104,12 +111,14 @@ impl Toi {
         (low, if self.cmp_f64(low).is_eq() { low } else { f64::from_bits(high) })
     }
 
-    /// The time as a fraction, where it is one. Decided exactly; costs as many bits as the coordinates have, three times.
+    /// Returns the time as a fraction, if it is one. The decision is exact; it costs three times
+    /// the bits of the coordinates.
     pub fn ratio(&self) -> Option<BigRational> {
         self.0.ratio()
     }
 
-    /// How much later than the time `x` is, rounded; negative where `x` is early, and zero only where it is neither.
+    /// Returns how much later than the time `x` is, rounded. It is negative if `x` is early, and
+    /// zero only if both are equal.
     ///
     /// # Panics
     /// If `x` is not finite.
@@ -121,7 +130,8 @@ impl Toi {
         let (x, mut root) = (Dyadic::of(x).ratio(), self.0.clone());
         let mut bits = 64;
         loop {
-            // Until the interval is nothing beside the difference; that is not zero, so this ends.
+            // Until the interval is negligible against the difference, which is not zero: so the
+            // loop ends.
             root.narrow_to(bits);
             let (low, high) = root.bounds();
             let (least, most) = (&x - high.ratio(), &x - low.ratio());

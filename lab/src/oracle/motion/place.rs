@@ -9,14 +9,16 @@ use std::cmp::Ordering;
 /// Pairs of points.
 const PAIRS: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
-/// The signed minors of the matrix with a row a coordinate and a row of ones, a column a point.
+/// The signed minors of the matrix with one row per coordinate, a row of ones, and one column per
+/// point.
 pub struct Minors {
     /// For each point, whether it belongs to the first feature.
     first: [bool; 4],
-    /// By axis and [`PAIRS`]: one point less the other.
+    /// By axis and [`PAIRS`]: the difference of two points.
     along: [[Polynomial; 6]; 3],
-    /// By the axis left out and the point left out: the area of the other three, signed as in a sum that vanishes: with
-    /// these weights the four points, seen along that axis, add up to zero.
+    /// By the axis and the point that are left out: the area of the other three. The sign is that
+    /// in a sum that vanishes. With these weights the four points, projected along that axis, add
+    /// up to zero.
     weights: [[Polynomial; 4]; 3],
     /// Six times the volume of the four points.
     volume: Polynomial,
@@ -28,7 +30,7 @@ impl Minors {
             Features::VertexFace => [true, false, false, false],
             Features::EdgeEdge => [true, true, false, false],
         };
-        // Each axis may have its own scale: whether features meet does not change by it.
+        // Each axis may have its own scale: whether features meet does not depend on it.
         let x: [[Polynomial; 4]; 3] = [0, 1, 2].map(|k| {
             let numbers: [f64; 8] = std::array::from_fn(
                 |i| if i < 4 { &case.positions_t0 } else { &case.positions_t1 }[i % 4][k],
@@ -54,7 +56,8 @@ impl Minors {
         Minors { first, along, weights, volume }
     }
 
-    /// The polynomials of which one, not zero itself, has a root wherever the features begin to meet after t = 0.
+    /// Returns the polynomials of the events. Whenever the features begin to meet after t = 0, one
+    /// that is not zero has a root.
     pub fn events(&self) -> Vec<Polynomial> {
         if !self.volume.is_zero() {
             return vec![self.volume.clone()];
@@ -69,14 +72,15 @@ impl Minors {
         events
     }
 
-    /// Whether the closed features share a point at that time.
+    /// Returns whether the closed features share a point at that time.
     pub fn meet(&self, at: &mut Root) -> bool {
-        // Points that span a volume: two of their disjoint subsets have no common point.
+        // The points span a volume: two disjoint subsets of them have no common point.
         if at.sign_of(&self.volume).is_ne() {
             return false;
         }
-        // Points that span a plane: one sum of them vanishes, with weights that add up to zero. The features meet where
-        // no feature has weights of both signs, nor both features weights of one.
+        // The points span a plane: one sum of them vanishes, with weights that add up to zero. The
+        // features meet unless one feature has weights of both signs, or both features have weights
+        // of one sign.
         for weights in &self.weights {
             let signs = weights.each_ref().map(|w| at.sign_of(w));
             if signs.iter().any(|s| s.is_ne()) {
@@ -84,7 +88,7 @@ impl Minors {
                 return !((0..4).any(|i| turned(i).is_gt()) && (0..4).any(|i| turned(i).is_lt()));
             }
         }
-        // Points that span a line, along which the features lie apart if one is all before the other.
+        // The points span a line. The features are apart on it if one is entirely before the other.
         for along in &self.along {
             let signs = along.each_ref().map(|d| at.sign_of(d));
             if signs.iter().any(|s| s.is_ne()) {

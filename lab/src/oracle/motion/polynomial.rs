@@ -18,7 +18,7 @@ fn power(base: u64, exponent: u64) -> u64 {
     bits.fold(1, |all, bit| product(product(all, all), if bit { base } else { 1 }))
 }
 
-/// The remainder modulo [`PRIME`].
+/// Returns the remainder modulo [`PRIME`].
 fn residue(c: &BigInt) -> u64 {
     let size = c
         .iter_u64_digits()
@@ -27,12 +27,12 @@ fn residue(c: &BigInt) -> u64 {
     if c.is_negative() && size > 0 { PRIME - size } else { size }
 }
 
-/// Coefficients by ascending power; the last is not zero, and zero has none.
+/// Coefficients by ascending power. The last one is not zero; the zero polynomial has none.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Polynomial(Vec<BigInt>);
 
 impl Polynomial {
-    /// From coefficients by ascending power.
+    /// Makes a polynomial from coefficients by ascending power.
     pub fn new(mut coefficients: Vec<BigInt>) -> Polynomial {
         while coefficients.last().is_some_and(Zero::is_zero) {
             coefficients.pop();
@@ -44,7 +44,7 @@ impl Polynomial {
         self.0.is_empty()
     }
 
-    /// Its degree; 0 for zero.
+    /// Returns the degree; 0 for zero.
     pub fn degree(&self) -> usize {
         self.0.len().saturating_sub(1)
     }
@@ -88,7 +88,7 @@ impl Polynomial {
         Polynomial(self.0.iter().enumerate().skip(1).map(|(i, c)| c * i).collect())
     }
 
-    /// Divided by the largest integer that divides every coefficient: the same roots and signs.
+    /// Divides by the largest integer that divides every coefficient: roots and signs stay.
     pub fn reduced(&self) -> Polynomial {
         let content = self.0.iter().fold(BigInt::zero(), |g, c| g.gcd(c));
         if content.is_zero() || content.is_one() {
@@ -97,7 +97,8 @@ impl Polynomial {
         Polynomial(self.0.iter().map(|c| c / &content).collect())
     }
 
-    /// Quotient and remainder of `self * m` by `divisor` (not zero), where `m` is some positive integer.
+    /// Returns quotient and remainder of `self * m` by `divisor` (not zero), for some positive
+    /// integer `m`.
     fn divided(&self, divisor: &Polynomial) -> (Polynomial, Polynomial) {
         let (lead, d) = (divisor.leading(), divisor.degree());
         let mut rest = self.0.clone();
@@ -116,7 +117,7 @@ impl Polynomial {
         (Polynomial::new(quotient), Polynomial::new(rest))
     }
 
-    /// The greatest common divisor, but for a factor that is a number.
+    /// Returns the greatest common divisor, up to a constant factor.
     pub fn common(&self, other: &Polynomial) -> Polynomial {
         if self.is_coprime_mod_prime(other) {
             return Polynomial(vec![BigInt::one()]);
@@ -129,9 +130,9 @@ impl Polynomial {
         a
     }
 
-    /// Whether the two have no common divisor among polynomials over the integers modulo a prime. Then they have none at
-    /// all: it would be one there as well, of the same degree unless the prime divides its leading coefficient, and so both
-    /// of theirs. Cheap; most that have none are told by it.
+    /// Returns whether the two have no common divisor modulo a prime. Then they have none at all:
+    /// it would also be one modulo the prime. Its degree would stay, unless the prime divides its
+    /// leading coefficient, and so both of theirs. The test is cheap and finds most coprime pairs.
     fn is_coprime_mod_prime(&self, other: &Polynomial) -> bool {
         let residues = |p: &Polynomial| p.0.iter().map(residue).collect::<Vec<u64>>();
         let (mut a, mut b) = (residues(self), residues(other));
@@ -158,19 +159,19 @@ impl Polynomial {
         false
     }
 
-    /// A polynomial with the same roots, each once.
+    /// Returns a polynomial with the same roots, each once.
     pub fn simple(&self) -> Polynomial {
         let double = self.common(&self.derivative());
         if double.degree() == 0 { self.clone() } else { self.divided(&double).0.reduced() }
     }
 
-    /// Whether the two differ by a factor only, which is a number; neither is zero.
+    /// Returns whether the two differ only by a constant factor; neither is zero.
     pub fn is_like(&self, other: &Polynomial) -> bool {
         let (p, q) = (self.leading(), other.leading());
         self.0.len() == other.0.len() && self.0.iter().zip(&other.0).all(|(a, b)| a * &q == b * &p)
     }
 
-    /// Its coefficients in Bernstein's form on [0, `end`], times one positive number.
+    /// Returns the coefficients in Bernstein form on [0, `end`], times one positive number.
     pub fn bernstein(&self, end: &Dyadic) -> Vec<BigInt> {
         let d = self.degree();
         let factorial = |n: usize| (1..=n).map(BigInt::from).product::<BigInt>();
@@ -184,7 +185,7 @@ impl Polynomial {
         (0..=d).map(|j| (0..=j).map(|i| choose(j, i) * &scaled[i]).sum()).collect()
     }
 
-    /// The value at `n / 2^k`, times `2^(k * degree)`.
+    /// Returns the value at `n / 2^k`, times `2^(k * degree)`.
     fn value(&self, n: &BigInt, k: u64) -> BigInt {
         let mut value = BigInt::zero();
         for (i, c) in self.0.iter().rev().enumerate() {
@@ -193,13 +194,13 @@ impl Polynomial {
         value
     }
 
-    /// The sign at a number.
+    /// Returns the sign at a number.
     pub fn sign_at(&self, t: &Dyadic) -> Ordering {
         self.value(&t.n, t.k).cmp(&BigInt::zero())
     }
 
-    /// The sign over all of `[low, high]`, `low >= 0`, if that is plain from the positive and the negative terms, each of
-    /// which only grows. Never `Equal`.
+    /// Returns the sign over all of `[low, high]`, `low >= 0`, if bounds show it. The positive and
+    /// the negative terms both only grow, so their ends bound them. Never `Equal`.
     pub fn sign_over(&self, low: &Dyadic, high: &Dyadic) -> Option<Ordering> {
         let (low, high, k) = low.aligned(high);
         let part = |keep: fn(&BigInt) -> bool| {

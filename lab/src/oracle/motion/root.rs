@@ -1,4 +1,4 @@
-//! Real roots of integer polynomials as numbers: told apart, compared, narrowed, all exactly.
+//! Real roots of integer polynomials as numbers: compared and narrowed, all exactly.
 
 use super::dyadic::Dyadic;
 use super::polynomial::Polynomial;
@@ -7,7 +7,7 @@ use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
 use std::cmp::Ordering;
 
-/// The one root of `of` between `low` and `high`, a simple one; or, where `low == high`, that number.
+/// The only root of `of` between `low` and `high`, a simple one; or, if `low == high`, that number.
 #[derive(Clone, Debug)]
 pub struct Root {
     of: Polynomial,
@@ -17,20 +17,21 @@ pub struct Root {
     above: Ordering,
 }
 
-/// Halvings between two looks at a sign.
+/// Number of halvings between two tests of a sign.
 const STRIDE: usize = 16;
-/// Looks before a sign is suspected to be zero.
+/// Number of tests after which a sign may be zero.
 const LOOKS: usize = 3;
 
 impl Root {
-    /// A number, the root of `2^k t - n`.
+    /// Returns a number, as the root of `2^k t - n`.
     pub fn at(t: Dyadic) -> Root {
         let of = Polynomial::new(vec![-&t.n, BigInt::one() << t.k]);
         Root { of, low: t.clone(), high: t, above: Ordering::Greater }
     }
 
-    /// All roots in `(0, end]` of a polynomial that is not zero, ascending. By Descartes' rule in Bernstein's form: as many
-    /// roots as the coefficients have changes of sign, or fewer by an even number; halved until that tells.
+    /// Returns all roots in `(0, end]` of a polynomial that is not zero, ascending. Descartes' rule
+    /// in Bernstein form bounds their number by the coefficients' changes of sign. The true number
+    /// is that, or less by an even number. The interval is halved until the number is clear.
     pub fn all(p: &Polynomial, end: &Dyadic) -> Vec<Root> {
         let mut found = Vec::new();
         if p.degree() == 0 || end.n.is_zero() {
@@ -41,7 +42,7 @@ impl Root {
         match changes(&coefficients) {
             0 => {}
             1 => isolate(p, coefficients, zero, end.clone(), &mut found),
-            // Halving ends where roots are simple.
+            // Halving ends if roots are simple.
             _ => {
                 let simple = p.simple();
                 isolate(&simple, simple.bernstein(end), zero, end.clone(), &mut found);
@@ -61,7 +62,7 @@ impl Root {
         (&self.low, &self.high)
     }
 
-    /// The root against a number.
+    /// Compares the root with a number.
     pub fn against(&self, t: &Dyadic) -> Ordering {
         if self.is_number() {
             return self.low.cmp(t);
@@ -98,8 +99,8 @@ impl Root {
         }
     }
 
-    /// The sign of a polynomial at the root. Ends: a sign that narrowing does not tell is zero, and then both
-    /// polynomials have a divisor with that root.
+    /// Returns the sign of a polynomial at the root. It ends: a sign that narrowing does not decide
+    /// is zero, and then both polynomials have a divisor with that root.
     pub fn sign_of(&mut self, q: &Polynomial) -> Ordering {
         if q.degree() == 0 {
             return q.leading().cmp(&BigInt::zero());
@@ -119,23 +120,24 @@ impl Root {
         q.sign_at(&self.low)
     }
 
-    /// Whether the root is one of `q` too: then of a common divisor, which changes its sign there, and nowhere else between
-    /// the bounds.
+    /// Returns whether the root is also one of `q`. Then it is one of a common divisor, which
+    /// changes its sign there and nowhere else between the bounds.
     fn is_root_of(&self, q: &Polynomial) -> bool {
         let divisor = self.of.common(q).simple();
         if divisor.degree() == 0 {
             return false;
         }
-        let beside = |t: &Dyadic, turn: bool| match divisor.sign_at(t) {
-            // A bound that is another root: the slope tells the sign next to it.
+        let sign_next_to = |t: &Dyadic, turn: bool| match divisor.sign_at(t) {
+            // The bound is another root: the slope gives the sign next to it.
             Ordering::Equal if turn => divisor.derivative().sign_at(t).reverse(),
             Ordering::Equal => divisor.derivative().sign_at(t),
             sign => sign,
         };
-        beside(&self.low, false) != beside(&self.high, true)
+        sign_next_to(&self.low, false) != sign_next_to(&self.high, true)
     }
 
-    /// The root as a fraction, if it is one. With leading coefficient `c`, `c` times a rational root is an integer.
+    /// Returns the root as a fraction, if it is one. With leading coefficient `c`, `c` times a
+    /// rational root is an integer.
     pub fn ratio(&self) -> Option<BigRational> {
         let mut root = self.clone();
         let c = root.of.leading().abs();
@@ -151,18 +153,18 @@ impl Root {
     }
 }
 
-/// Changes of sign from one coefficient that is not zero to the next.
+/// Returns the number of sign changes between successive nonzero coefficients.
 fn changes(coefficients: &[BigInt]) -> usize {
     let signs: Vec<bool> = coefficients.iter().filter(|c| !c.is_zero()).map(Signed::is_positive).collect();
     signs.windows(2).filter(|two| two[0] != two[1]).count()
 }
 
-/// The roots between `low` and `high`, given the coefficients in Bernstein's form on that interval.
+/// Finds the roots between `low` and `high`, given the Bernstein coefficients on that interval.
 fn isolate(of: &Polynomial, coefficients: Vec<BigInt>, low: Dyadic, high: Dyadic, found: &mut Vec<Root>) {
     match changes(&coefficients) {
         0 => {}
         1 => {
-            // The last coefficient that is not zero has the sign just below the upper end.
+            // The last nonzero coefficient has the sign just below the upper end.
             let last = coefficients.iter().rev().find(|c| !c.is_zero()).map(Signed::is_positive);
             let above = if last == Some(true) { Ordering::Greater } else { Ordering::Less };
             found.push(Root { of: of.clone(), low, high, above });
@@ -221,7 +223,8 @@ impl Ord for Root {
             if b.high <= a.low {
                 return Ordering::Greater;
             }
-            // The one root of `a` is a root of `b`'s polynomial and lies in `b`'s interval, which has one.
+            // The only root of `a` is a root of `b`'s polynomial and is in `b`'s interval, which
+            // has one.
             if look == LOOKS && a.is_root_of(&b.of) && a.within(&b) {
                 return Ordering::Equal;
             }
@@ -232,7 +235,7 @@ impl Ord for Root {
 }
 
 impl Root {
-    /// Whether the root lies in the interval of `other`.
+    /// Returns whether the root is in the interval of `other`.
     fn within(&self, other: &Root) -> bool {
         self.against(&other.low).is_gt() && self.against(&other.high).is_le()
     }

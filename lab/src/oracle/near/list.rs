@@ -1,26 +1,27 @@
-//! All pairs of features within a distance: each is asked.
+//! All pairs of features within a distance, by testing each pair.
 
 use super::{Squared, distance_squared};
 use crate::case::Features;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A mesh: where its vertices are, and its faces.
+/// A mesh: vertex positions and faces.
 pub struct Shape {
     /// Vertices.
     pub points: Vec<[f64; 3]>,
-    /// Faces; of those that repeat a vertex the edges and points that they are.
+    /// Faces; one that repeats a vertex is an edge or a point.
     pub faces: Vec<[u32; 3]>,
 }
 
-/// Kind, `vf` or `ee`, the shapes of both features, and the features. Edges are numbered by larger, then smaller vertex.
+/// Kind, `vf` or `ee`, the shapes of both features, and the features. Edges are numbered by larger,
+/// then smaller vertex.
 pub type Row = (&'static str, [usize; 2], [u32; 2]);
 
 impl Shape {
-    /// Its vertices that some face uses.
+    /// Returns the vertices that some face uses.
     fn used(&self) -> BTreeSet<u32> {
         self.faces.iter().flatten().copied().collect()
     }
-    /// Its edges, larger vertex first.
+    /// Returns the edges, larger vertex first.
     pub fn edges(&self) -> Vec<[u32; 2]> {
         let sides = self.faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
         let edges: BTreeSet<_> = sides.filter(|[a, b]| a != b).map(|[a, b]| [a.max(b), a.min(b)]).collect();
@@ -29,7 +30,7 @@ impl Shape {
     fn at(&self, vertex: u32) -> [f64; 3] {
         self.points[vertex as usize]
     }
-    /// The points of a row's pair, in [`Features`]' order: of one mesh, or of two.
+    /// Returns the points of a row's pair, in [`Features`]' order: of one mesh, or of two.
     pub fn pair(shapes: &[Shape], row: Row) -> (Features, [[f64; 3]; 4]) {
         let (kind, of, [a, b]) = row;
         let [one, other] = of.map(|at| &shapes[at]);
@@ -48,7 +49,7 @@ impl Shape {
     }
 }
 
-/// Whether two sets of points are farther apart on some axis than a distance, told with room to spare.
+/// Returns whether two sets of points are certainly farther apart than a distance, on some axis.
 fn apart(one: &[[f64; 3]], other: &[[f64; 3]], distance: f64) -> bool {
     let range = |of: &[[f64; 3]], k: usize| {
         let all = of.iter().map(|p| p[k]);
@@ -60,7 +61,8 @@ fn apart(one: &[[f64; 3]], other: &[[f64; 3]], distance: f64) -> bool {
     })
 }
 
-/// All pairs of features without a common vertex whose distance is at most `distance`, and its square: of one mesh, or between two.
+/// Returns all pairs of features without a common vertex within `distance`, with the squares of
+/// their distances: of one mesh, or between two.
 pub fn all_within(shapes: &[Shape], distance: f64) -> BTreeMap<Row, Squared> {
     let last = shapes.len() - 1;
     let (one, other) = (&shapes[0], &shapes[last]);

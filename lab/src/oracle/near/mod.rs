@@ -1,9 +1,11 @@
-//! How far two features at rest are from each other, exactly; all pairs of features within a distance, and the
-//! least distance of two sets of triangles, by asking each.
+//! The exact distance of two features at one time. All pairs of features within a distance, and the
+//! least distance of two sets of triangles, by testing each pair.
 //!
-//! The method shares nothing with the kernels': coordinates become integers by one power of two, and the square of the distance is
-//! the least of a few fractions of integers. Of two flat bodies that are apart, and of such that meet, the least is where the perpendicular
-//! from one to the other ends inside, or on a side: each is asked in turn. Degenerate features have no inside, and their sides tell.
+//! The method shares nothing with the kernels'. Coordinates become integers by one power of two.
+//! The square of the distance is the least of a few fractions of integers. The least distance is
+//! attained at one of two places. Either the perpendicular from one feature to the other ends
+//! inside, or the nearest point is on a side: both are tested. Degenerate features have no inside,
+//! so only their sides count.
 
 mod list;
 mod triangles;
@@ -23,7 +25,7 @@ type Point = [BigInt; 3];
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Squared(BigRational);
 
-/// Coordinates as integers: all times `2^grid`.
+/// Returns coordinates as integers: all times `2^grid`.
 fn integers<const N: usize>(points: [[f64; 3]; N]) -> ([Point; N], u64) {
     let exact = points.map(|p| p.map(exact));
     // A finite f64 is a fraction whose denominator is a power of two.
@@ -40,7 +42,7 @@ fn dot(a: &Point, b: &Point) -> BigInt {
     (0..3).map(|k| &a[k] * &b[k]).sum()
 }
 
-/// The square of the distance from the origin to the segment from `x` along `e`.
+/// Returns the square of the distance from the origin to the segment from `x` along `e`.
 fn to_segment(x: &Point, e: &Point) -> BigRational {
     let (along, length) = (-dot(x, e), dot(e, e));
     if !along.is_positive() {
@@ -53,8 +55,9 @@ fn to_segment(x: &Point, e: &Point) -> BigRational {
     BigRational::new(dot(x, x) * &length - &along * &along, length)
 }
 
-/// Inside of the domain, where the perpendicular ends there: of `x(s, t) = r + s p + t q` with `s, t >= 0`, and `s + t <= 1` of a triangle,
-/// `s, t <= 1` of a parallelogram.
+/// Returns the square of the perpendicular's length, if it ends inside the domain. The domain is
+/// `x(s, t) = r + s p + t q` with `s, t >= 0`; `s + t <= 1` for a triangle, and `s, t <= 1` for a
+/// parallelogram.
 fn inside([r, p, q]: [&Point; 3], triangle: bool) -> Option<BigRational> {
     let (pp, qq, pq, rp, rq) = (dot(p, p), dot(q, q), dot(p, q), dot(r, p), dot(r, q));
     let whole = &pp * &qq - &pq * &pq;
@@ -62,11 +65,11 @@ fn inside([r, p, q]: [&Point; 3], triangle: bool) -> Option<BigRational> {
     let within = !s.is_negative()
         && !t.is_negative()
         && if triangle { &s + &t <= whole } else { s <= whole && t <= whole };
-    // |r|^2 less what r has in the plane of p and q.
+    // r|^2 minus the part of r in the plane of p and q.
     (whole.is_positive() && within).then(|| BigRational::new(dot(r, r) * &whole + s * rp + t * rq, whole))
 }
 
-/// The square of the distance of the two features, in [`Features`]' order of points.
+/// Returns the square of the distance of the two features, in [`Features`]' order of points.
 ///
 /// # Panics
 /// For coordinates that are not finite.
@@ -93,8 +96,8 @@ pub fn distance_squared(features: Features, points: [[f64; 3]; 4]) -> Squared {
     Squared(least / BigRational::from(BigInt::one() << (2 * grid)))
 }
 
-/// The square of the distance of two points: of a vertex and of that of a face which has these weights (over their sum), or of those that
-/// lie so far along two edges.
+/// Returns the square of the distance of two points. For a vertex and a face the weights, over
+/// their sum, give the point of the face. For two edges they are the positions along both edges.
 ///
 /// # Panics
 /// For numbers that are not finite, and weights that sum to 0.
@@ -110,15 +113,16 @@ pub fn squared_at(features: Features, points: [[f64; 3]; 4], weights: [f64; 3]) 
 }
 
 impl Squared {
-    /// Whether the distance is at most `length`, which is not negative.
+    /// Returns whether the distance is at most `length`, which is not negative.
     pub fn is_within(&self, length: f64) -> bool {
         let length = exact(length);
         self.0 <= &length * &length
     }
 
-    /// The number nearest to it, or nearly.
+    /// Returns an f64 near to it.
     pub fn to_f64(&self) -> f64 {
-        // Its own conversion is of numerator and denominator, each of which may be too large.
+        // The rational's own conversion converts numerator and denominator, each of which may be
+        // too large.
         let (numer, denom) = (self.0.numer(), self.0.denom());
         if numer.is_zero() {
             return 0.0;
@@ -129,9 +133,10 @@ impl Squared {
         scaled.to_f64().unwrap_or(f64::INFINITY) * halves[0] * halves[1]
     }
 
-    /// Whether the root of `squared` is within `by` of the distance. Decided to a billionth of `by`, to its disadvantage.
+    /// Returns whether the root of `squared` is within `by` of the distance. The decision has an
+    /// error of a billionth of `by`, to its disadvantage.
     pub fn is_near(&self, squared: f64, by: f64) -> bool {
-        // |sqrt a - sqrt b| = |a - b| / (sqrt a + sqrt b), and by^2 >= |a - b| is enough.
+        // sqrt a - sqrt b| = |a - b| / (sqrt a + sqrt b), and by^2 >= |a - b| suffices.
         let (off, by) = ((exact(squared) - &self.0).abs(), exact(by));
         if &by * &by >= off {
             return true;
@@ -141,12 +146,12 @@ impl Squared {
     }
 }
 
-/// A number not above the root of `x`, by a billionth of `by` or less.
+/// Returns a lower bound of the root of `x`, off by a billionth of `by` or less.
 fn below_root(x: &BigRational, by: &BigRational) -> BigRational {
     if x.is_zero() {
         return BigRational::zero();
     }
-    // sqrt(n / d) = sqrt(n d) / d, of integers after a shift by which a unit is small enough.
+    // sqrt(n / d) = sqrt(n d) / d, of integers after a shift that makes a unit small enough.
     let fine = by.denom().bits().saturating_sub(by.numer().bits()) + 32;
     let whole: BigInt = (x.numer() << (2 * fine)) / x.denom();
     debug_assert_ne!(whole.sign(), Sign::Minus);

@@ -1,4 +1,4 @@
-//! The least distance of two sets of triangles: each pair is asked.
+//! The least distance of two sets of triangles, by testing each pair.
 
 use super::{Squared, distance_squared};
 use crate::case::Features;
@@ -6,7 +6,8 @@ use crate::oracle::{Triangle, triangles_meet};
 use num_rational::BigRational;
 use num_traits::Zero;
 
-/// The square of the distance of two closed triangles: 0 where they share a point, else the least of their fifteen pairs of features.
+/// Returns the square of the distance of two closed triangles: 0 if they share a point, else the
+/// least of their fifteen pairs of features.
 ///
 /// # Panics
 /// For coordinates that are not finite.
@@ -33,7 +34,7 @@ pub fn triangles_squared(p: &Triangle, q: &Triangle) -> Squared {
     least.unwrap_or_else(|| Squared(BigRational::zero()))
 }
 
-/// How far apart the boxes of two triangles are on the axis on which they are farthest.
+/// Returns the gap between the boxes of two triangles on the axis with the largest gap.
 fn gap(p: &Triangle, q: &Triangle) -> f64 {
     let range = |of: &Triangle, k: usize| {
         let all = of.iter().map(|p| p[k]);
@@ -46,12 +47,12 @@ fn gap(p: &Triangle, q: &Triangle) -> f64 {
     (0..3).map(on).fold(0.0, f64::max)
 }
 
-/// The least of the squares of all pairs of a triangle of each; `None` where one has none.
+/// Returns the least square over all pairs with a triangle of each set; `None` if one set is empty.
 pub fn least_squared(one: &[Triangle], other: &[Triangle]) -> Option<Squared> {
     let mut least: Option<Squared> = None;
     for p in one {
         for q in other {
-            // With room to spare: what is told of boxes is rounded.
+            // With a margin: the gap of boxes is rounded.
             let hopeless = least
                 .as_ref()
                 .is_some_and(|least| least.is_within(gap(p, q) * (1.0 - 1e-9)) && gap(p, q) > 0.0);

@@ -1,11 +1,11 @@
-//! Two edges.
+//! Cases of two edges.
 
 use super::Expect::{Apart, CollisionFilter, Sure};
 use super::{EDGE, Question, Row, and, ee};
 
 type Ends = [[f64; 3]; 2];
 
-/// Along y at x = 1, crossing the edge; along x; the other way.
+/// Edges along y at x, across the edge; along x; and in the opposite direction.
 const fn across(x: f64, z: f64) -> Ends {
     [[x, -1.0, z], [x, 1.0, z]]
 }
@@ -19,7 +19,7 @@ const fn point(y: f64, z: f64) -> Ends {
     [[1.0, y, z]; 2]
 }
 
-/// Against [`super::EDGE`] at rest.
+/// Motions against [`super::EDGE`] at rest.
 const MOVES: [Row<Ends>; 17] = [
     ("X29", "plain", across(1.0, 3.0), across(1.0, -1.0), Sure(0.75)),
     ("X18", "plain, beyond the end", across(5.0, 3.0), across(5.0, -1.0), Apart),
@@ -52,7 +52,7 @@ const MOVES: [Row<Ends>; 17] = [
     ("X35", "a million lengths a step", across(1.0, 3e6), across(1.0, -1e6), Sure(0.75)),
 ];
 
-/// Edges that are almost parallel: by 10^-k.
+/// Exponents k of the angle 10^-k of almost parallel edges.
 const TILTS: std::ops::Range<i32> = 1..17;
 
 pub fn questions() -> Vec<Question> {
@@ -71,7 +71,7 @@ pub fn questions() -> Vec<Question> {
         let at = |z: f64| and(EDGE, [[1.0, -tilt, z], [3.0, tilt, z]]);
         ee(("X21", "nearly parallel"), at(2.0), at(-2.0), CollisionFilter(0.5))
     }));
-    // Who moves, and how both move together, is nothing to them.
+    // The answer does not depend on which edge moves, nor on a common motion.
     let raised = EDGE.map(|x| [x[0], x[1], 4.0]);
     let shifted = and(EDGE, across(1.0, -1.0)).map(|p| [p[0], p[1] + 1048576.0, p[2] + 1048576.0]);
     let from = and(EDGE, across(1.0, 3.0));

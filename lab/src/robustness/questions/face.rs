@@ -1,9 +1,9 @@
-//! A vertex and a face.
+//! Cases of a vertex and a face.
 
 use super::Expect::{Apart, CollisionFilter, Near, Sure};
 use super::{FACE, Question, Row, vf, with};
 
-/// Against [`super::FACE`] at rest.
+/// Motions against [`super::FACE`] at rest.
 const FALLS: [Row<[f64; 3]>; 21] = [
     ("X30", "plain", [2.0, 2.0, 3.0], [2.0, 2.0, -1.0], Sure(0.75)),
     ("X15", "in the plane, entering", [12.0, 4.0, 0.0], [-4.0, 4.0, 0.0], CollisionFilter(0.5)),
@@ -60,7 +60,8 @@ pub fn questions() -> Vec<Question> {
     all
 }
 
-/// Faces that turn over through a segment, at a half; and planes that a vertex touches, enters and leaves.
+/// Faces that turn over through a segment at t = 1/2; and planes that a vertex touches, enters and
+/// leaves.
 fn turning() -> Vec<Question> {
     let upright = [[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [4.0, 8.0, 0.0]];
     let turned = [[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [4.0, -8.0, 0.0]];
@@ -69,16 +70,17 @@ fn turning() -> Vec<Question> {
         over("turning over", [4.0, -1.0, 3.0], [4.0, -1.0, -1.0], Sure(0.75)),
         over("turning over, aside", [20.0, 20.0, 0.0], [20.0, 20.0, 0.0], Apart),
     ];
-    // The height over the plane is 32 (t - 1/2)^2 - 8 d: at d = 0 the path is tangent to the plane, inside the face.
-    // Where the far corner `x` starts at -2 and ends at 14, the face is a segment at 1/8: a third root, outside.
+    // The height over the plane is 32 (t - 1/2)^2 - 8 d: at d = 0 the path is tangent to the plane,
+    // inside the face. If the far corner `x` starts at -2 and ends at 14, the face is a segment at
+    // 1/8: a third root, outside.
     let face = |t: f64, x: f64| [[0.0, 0.0, 0.0], [x, 0.0, 0.0], [0.0, 8.0, 8.0 * (t - 0.5)]];
     let grazing = |id, what, d: f64, x: [f64; 2], expect| {
         let at = |t: f64| with([2.0, 4.0 * t, 2.0 * (t - 0.5) + d], face(t, x[t as usize]));
         vf((id, what), at(0.0), at(1.0), expect)
     };
     let ulp = f64::EPSILON;
-    // Without a search, as in f32 alone, all that is known is when the vertex comes within half the tolerance: earlier by
-    // the root of it.
+    // Without a search, as in f32 alone, only the time is known at which the vertex comes within
+    // half the tolerance. That is earlier by its square root.
     let graze =
         |what, d, t| Question { is_fine: true, ..grazing("X27", what, d, [8.0; 2], CollisionFilter(t)) };
     all.extend([
@@ -92,13 +94,13 @@ fn turning() -> Vec<Question> {
     all
 }
 
-/// Faces that move.
+/// Moving faces.
 fn moving() -> Vec<Question> {
     let face = |x: f64, z: f64| FACE.map(|p| [p[0] + x, p[1], p[2] + z]);
     let rising = [with([2.0, 2.0, 3.0], FACE), with([2.0, 2.0, 3.0], face(0.0, 4.0))];
     let huge = 1048576.0;
     let together = [with([2.0, 2.0, 3.0], FACE), with([2.0 + huge, 2.0, -1.0], face(huge, 0.0))];
-    // A thousandth of relative motion within a common one of a million.
+    // A relative motion of a thousandth within a common one of a million.
     let fine = 1.0 / 1024.0;
     let slow = [with([2.0, 2.0, fine], FACE), with([2.0 + huge, 2.0, -fine], face(huge, 0.0))];
     let quiet = |q: Question| Question { early: 0.02, is_fine: true, ..q };

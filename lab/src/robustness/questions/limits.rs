@@ -1,4 +1,4 @@
-//! Limits of what is asked: tolerance, separation, the end of the step; and of size.
+//! Limits of the parameters: tolerance, separation, the end of the step; and of size.
 
 use super::Expect::{Apart, CollisionFilter, Near, Sure};
 use super::{EDGE, FACE, Question, and, ee, vf, with};
@@ -15,7 +15,7 @@ fn still(z: f64) -> super::Four {
     with([2.0, 2.0, z], FACE)
 }
 
-/// Until a part of the step.
+/// Steps that end early.
 fn ends() -> Vec<Question> {
     let until = |end: f64, q: Question| Question { end, ..q };
     vec![
@@ -38,7 +38,8 @@ fn separations() -> Vec<Question> {
         apart(1.0, ee(("X38", "edges"), edges(3.0), edges(-1.0), Sure(0.5))),
         apart(1e-12, vf(("X39", "far below f32"), still(3.0), still(-1.0), CollisionFilter(0.75))),
     ];
-    // Past a corner at that distance, across all three axes: nearest at a half, and at the distance a little before.
+    // A path past a corner at that distance, across all three axes. It is nearest at t = 1/2, and
+    // reaches the distance a little before.
     let d = 1.0 / 3f64.sqrt();
     let before = (1.0f64 - 0.999 * 0.999).sqrt() / 2f64.sqrt() / 8.0;
     let by = |factor: f64, s: f64| with([-d * factor + s, -d * factor - s, d * factor], FACE);
@@ -66,30 +67,30 @@ fn separations() -> Vec<Question> {
     all
 }
 
-/// No tolerance, and tolerances that are none.
+/// Tolerances that are zero or almost zero.
 fn tolerances() -> Vec<Question> {
     let mut all = Vec::new();
     for tolerance in [0.0, 5e-324, 1e-300, 1e-12] {
-        let asked = |q: Question| Question { tolerance, early: 1e-4, ..q };
-        all.push(asked(vf(("X40", "hardly a tolerance"), still(3.0), still(-1.0), CollisionFilter(0.75))));
-        all.push(asked(vf(("X40", "hardly a tolerance, apart"), still(3.0), still(1.0), Apart)));
+        let adjusted = |q: Question| Question { tolerance, early: 1e-4, ..q };
+        all.push(adjusted(vf(("X40", "hardly a tolerance"), still(3.0), still(-1.0), CollisionFilter(0.75))));
+        all.push(adjusted(vf(("X40", "hardly a tolerance, apart"), still(3.0), still(1.0), Apart)));
     }
     for tolerance in [1.0, 1e300] {
-        let asked = |q: Question| Question { tolerance, early: 1.0, ..q };
-        all.push(asked(vf(
+        let adjusted = |q: Question| Question { tolerance, early: 1.0, ..q };
+        all.push(adjusted(vf(
             ("X40", "a tolerance beyond all"),
             still(3.0),
             still(-1.0),
             CollisionFilter(0.75),
         )));
     }
-    // Half of what they are apart at the start.
+    // Half of the distance at the start.
     let leaving = vf(("X34", "farther than the tolerance, leaving"), still(1e-6), still(5.0), Apart);
     all.push(Question { tolerance: 5e-7, is_fine: true, ..leaving });
     all
 }
 
-/// Sizes, and sizes that do not go together.
+/// Sizes, and pairs of very different sizes.
 fn sizes() -> Vec<Question> {
     let sized = |id, what, size: f64, z: [f64; 2], expect| {
         let [from, to] = z.map(|z| still(z).map(|p| p.map(|x| x * size)));
@@ -102,25 +103,26 @@ fn sizes() -> Vec<Question> {
         all.push(Question { blur: 1e-15, ..sized(id, "scaled", size, [3.0, -1.0], Sure(0.75)) });
         all.push(sized(id, "scaled, apart", size, [3.0, 1.0], Apart));
     }
-    // Rounded to subnormal floats first: 14,272 units in the last place a length.
+    // Rounded to subnormal floats first: a length has 14,272 units in the last place.
     let tiny = |z: f64| still(z).map(|p| p.map(|x| f64::from((x * 1e-41) as f32)));
     let subnormal = vf(("X06", "subnormal floats"), tiny(3.0), tiny(-1.0), CollisionFilter(0.75));
     all.push(Question { tolerance: 1e-44, blur: 1e-3, early: 1e-2, ..subnormal });
     let tiny = |z: f64| still(z).map(|p| p.map(|x| x * 5e-324));
     let least = vf(("X06", "the least doubles"), tiny(3.0), tiny(-1.0), CollisionFilter(0.75));
     all.push(Question { tolerance: 5e-324, early: 1.0, is_fine: true, ..least });
-    // An edge of two million across one of a thousandth.
+    // An edge of length two million across one of a thousandth.
     let mixed = |z: f64| and([[-1e6, 0.0, 0.0], [1e6, 0.0, 0.0]], [[0.25, -5e-4, z], [0.25, 5e-4, z]]);
     let small = ee(("X08", "a million and a thousandth"), mixed(1e-3), mixed(-1e-3), Sure(0.5));
     all.push(Question { is_fine: true, tolerance: 1e-7, ..small });
-    // Far from the origin, all numbers exact, in f32 too.
+    // Far from the origin, with all numbers exact, even in f32.
     let far = |z: f64| with([2.0, 2.0, z], FACE).map(|p| [p[0] + 1e7, p[1] - 1e7, p[2] + 8e6]);
     all.push(vf(("X09", "far from the origin"), far(3.0), far(-1.0), Sure(0.75)));
     all.push(vf(("X10", "far from the origin, apart"), far(3.0), far(1.0), Apart));
-    // Far from the origin with a fraction that no float there holds.
+    // Far from the origin, with a fraction that no float there holds.
     let fine = |z: f64| with([2.1, 2.3, z], FACE).map(|p| [p[0] + 1e7, p[1] + 1e7, p[2]]);
     all.push(vf(("X09", "far from the origin, off the grid of floats"), fine(3.0), fine(-1.0), Sure(0.75)));
-    // Time must be as good for a large face as for a small one (parry#429), and for a shallow one (bullet3#2157).
+    // Times must be as exact for a large face as for a small one (parry#429). So must those for a
+    // shallow face (bullet3#2157).
     for side in [10.0, 100.0, 1000.0] {
         let at = |z: f64| with([side / 4.0, side / 4.0, z], FACE.map(|p| p.map(|x| x / 8.0 * side)));
         let tile = vf(("parry#429", "a tile of any size"), at(3.0), at(-1.0), Sure(0.75));

@@ -1,4 +1,4 @@
-//! The single questions of the catalogue: two features, one extreme, and what must be said.
+//! The single cases of the catalogue: two features, one extreme, and the required answer.
 
 mod edges;
 mod face;
@@ -13,10 +13,10 @@ use crate::case::Features;
 
 /// Four points.
 type Four = [[f64; 3]; 4];
-/// An id, what is extreme, where the one feature starts and ends, and the answer.
+/// An id, the extreme, the first feature's start and end, and the required answer.
 type Row<P> = (&'static str, &'static str, P, P, Expect);
 
-/// All of them.
+/// Returns all cases.
 pub fn questions() -> Vec<Question> {
     let mut all = face::questions();
     all.extend(edges::questions());
@@ -39,12 +39,12 @@ fn and(a: [[f64; 3]; 2], b: [[f64; 3]; 2]) -> Four {
     [a[0], a[1], b[0], b[1]]
 }
 
-/// A question about a vertex and a face.
+/// Makes a case of a vertex and a face.
 fn vf(name: (&'static str, &'static str), t0: Four, t1: Four, expect: Expect) -> Question {
     Question::new(name, Features::VertexFace, [t0, t1], expect)
 }
 
-/// A question about two edges.
+/// Makes a case of two edges.
 fn ee(name: (&'static str, &'static str), t0: Four, t1: Four, expect: Expect) -> Question {
     Question::new(name, Features::EdgeEdge, [t0, t1], expect)
 }

@@ -3,10 +3,11 @@
 use super::{Expect, Question};
 use crate::case::Features;
 
-/// Report and id, vertex/face (else edge/edge), the four points at time 0 and 1, the longest time, the first contact.
+/// Report and id, whether vertex/face (else edge/edge), the four points at time 0 and 1, the
+/// longest time, the first contact.
 pub type Reported = (&'static str, bool, [[f64; 3]; 4], [[f64; 3]; 4], f64, Option<f64>);
 
-/// All of them.
+/// All reported motions.
 pub const MOTIONS: [Reported; 12] = [
     (
         "Tight-Inclusion#1: ti1",
@@ -166,7 +167,7 @@ pub const MOTIONS: [Reported; 12] = [
     ),
 ];
 
-/// Those reported in public.
+/// Returns the publicly reported motions as cases.
 pub fn reported_motions() -> Vec<Question> {
     MOTIONS
         .iter()
@@ -174,7 +175,7 @@ pub fn reported_motions() -> Vec<Question> {
             let (what, id) = name.rsplit_once(": ").unwrap_or((name, name));
             let features = if face { Features::VertexFace } else { Features::EdgeEdge };
             let expect = truth.map_or(Expect::Near, Expect::CollisionFilter);
-            // Decimals of the truth are rounded.
+            // Decimals of the expected time are rounded.
             let (blur, tolerance, early) = (1e-11, 1e-9, 1e-4);
             let question = Question::new((id, what), features, [t0, t1], expect);
             Question { end, blur, tolerance, early, is_fine: true, ..question }

@@ -3,7 +3,8 @@
 use super::Expect::{Apart, CollisionFilter, Near, Sure};
 use super::{EDGE, FACE, Four, Question, and, ee, vf, with};
 
-/// A family, its three axes' sizes, and whether an axis is lost beside another: then only misses and lies are faults.
+/// A family, the sizes of its three axes, and whether one axis vanishes next to another: then only
+/// misses and false certificates are faults.
 type Scale = (&'static str, &'static str, [f64; 3], bool);
 
 fn scales() -> [Scale; 9] {
@@ -27,7 +28,7 @@ pub fn questions() -> Vec<Question> {
     for (id, what, by, lost) in scales() {
         let sized = |all: Four| all.map(|p| [0, 1, 2].map(|k| p[k] * by[k]));
         let smallest = by[0].min(by[1]).min(by[2]);
-        let asked = |q: Question| Question {
+        let adjusted = |q: Question| Question {
             tolerance: smallest / 1024.0,
             early: if lost { 1.0 } else { 1e-2 },
             is_fine: lost || id != "X61",
@@ -36,17 +37,17 @@ pub fn questions() -> Vec<Question> {
         let above = |z: f64| sized(with([2.0, 2.0, z], FACE));
         let across = |z: f64| sized(and(EDGE, [[1.0, -1.0, z], [1.0, 1.0, z]]));
         let (meets, apart) = if lost { (CollisionFilter(0.75), Near) } else { (Sure(0.75), Apart) };
-        all.push(asked(vf((id, what), above(3.0), above(-1.0), meets)));
-        all.push(asked(vf((id, what), above(3.0), above(1.0), apart)));
-        all.push(asked(ee((id, what), across(3.0), across(-1.0), meets)));
-        all.push(asked(ee((id, what), across(3.0), across(1.0), apart)));
+        all.push(adjusted(vf((id, what), above(3.0), above(-1.0), meets)));
+        all.push(adjusted(vf((id, what), above(3.0), above(1.0), apart)));
+        all.push(adjusted(ee((id, what), across(3.0), across(-1.0), meets)));
+        all.push(adjusted(ee((id, what), across(3.0), across(1.0), apart)));
     }
     all.extend(faint());
     all
 }
 
-/// What rests in a face, or on another edge, of an extent on one axis of about the smallest f32 beside a million: in f32 the
-/// heights no longer belong together.
+/// Features that rest in a face, or on another edge. On one axis their extent is about the smallest
+/// f32, compared with a million. In f32 their heights no longer match.
 fn faint() -> [Question; 2] {
     let x = |parts: f64| parts * 1.375 * f64::from(f32::from_bits(1));
     let side = 524288.0;
@@ -56,9 +57,9 @@ fn faint() -> [Question; 2] {
         [[0.0; 3], [x(1.0), side / 2.0, side / 2.0]],
         [[x(0.375), 0.375 * side, 0.0], [x(0.375), 0.0, 0.375 * side]],
     );
-    let asked = |q: Question| Question { is_fine: true, ..q };
+    let adjusted = |q: Question| Question { is_fine: true, ..q };
     [
-        asked(vf(("X63", "at rest in a face, one axis below f32"), rest, rest, CollisionFilter(0.0))),
-        asked(ee(("X63", "at rest on an edge, one axis below f32"), cross, cross, CollisionFilter(0.0))),
+        adjusted(vf(("X63", "at rest in a face, one axis below f32"), rest, rest, CollisionFilter(0.0))),
+        adjusted(ee(("X63", "at rest on an edge, one axis below f32"), cross, cross, CollisionFilter(0.0))),
     ]
 }

@@ -1,4 +1,5 @@
-//! Small scenes of the catalogue: bodies given by their numbers, and what must be found, or how they must be refused.
+//! Small scenes of the catalogue: bodies given by their numbers, with the required pairs, or the
+//! required refusal.
 
 mod moving;
 mod refused;
@@ -15,36 +16,36 @@ use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Discrete, Query, TriangleTest};
 use nearmiss::scene::CollisionFilter;
 
-/// A body's numbers. In f32 where that holds them all, unless `wide`.
+/// A body's numbers. Stored in f32 if that holds all of them, unless `wide`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Numbers {
-    /// Where its vertices are at t = 0.
+    /// Positions of its vertices at t = 0.
     pub t0: Vec<[f64; 3]>,
-    /// Where they are at t = 1; empty where nothing moves.
+    /// Positions at t = 1; empty if the body is still.
     pub t1: Vec<[f64; 3]>,
-    /// Three vertices a triangle.
+    /// Three vertices per triangle.
     pub faces: Vec<[u32; 3]>,
-    /// In f64, whatever the numbers.
+    /// Whether to store f64 for any numbers.
     pub wide: bool,
 }
 
 impl Numbers {
-    /// Triangles that stand still and share no vertex.
+    /// Returns still triangles that share no vertex.
     pub fn loose(triangles: &[Triangle]) -> Numbers {
         let faces = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         Numbers { t0: triangles.as_flattened().to_vec(), faces, ..Numbers::default() }
     }
 
-    /// The same, moved by so much during the step.
+    /// Returns the same body, moved by `d` during the step.
     pub fn by(self, d: [f64; 3]) -> Numbers {
         let t1 = self.t0.iter().map(|p| [p[0] + d[0], p[1] + d[1], p[2] + d[2]]).collect();
         Numbers { t1, ..self }
     }
 
-    /// The body.
+    /// Returns the body.
     ///
     /// # Errors
-    /// [`Error::Input`] where a mesh is refused.
+    /// [`Error::Input`] if a mesh is refused.
     pub fn body(&self) -> Result<Body, Error> {
         let mesh = |points: &[[f64; 3]]| {
             let narrow: Vec<[f32; 3]> = points.iter().map(|p| p.map(|x| x as f32)).collect();
@@ -65,23 +66,23 @@ impl Numbers {
     }
 }
 
-/// A pair of features: their kind, their bodies and themselves.
+/// A pair of features: their kind, their bodies and their indices.
 pub type Pair = (Kind, [usize; 2], u32, u32);
 
-/// What must be found.
+/// The required answer.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Finds {
     /// These triangle pairs and no others.
     Pairs(Vec<[u32; 2]>),
     /// The triangle pairs that the rational oracle finds.
     Oracle,
-    /// The same, and no pair needs more than the filter of floats.
+    /// The same, and the filter in floats decides every pair.
     OracleByFilter,
-    /// These feature pairs with their first times, and no others that are certain.
+    /// These feature pairs with their first times, and no other certified ones.
     Contacts(Vec<(Kind, u32, u32, f64)>),
     /// At least these feature pairs, of these bodies, none before the time.
     Includes(Vec<Pair>, f64),
-    /// For each of these vertices a vertex/face contact with first time `.1`.
+    /// For each of these vertices, a vertex/face contact with first time `.1`.
     EachVertex(Vec<u32>, f64),
     /// So many feature pairs, all from the start.
     AtOnce(usize),
@@ -90,26 +91,26 @@ pub enum Finds {
 /// A scene with its answer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// Its name in `docs/internals/robustness.md`.
+    /// Its id in `docs/internals/robustness.md`.
     pub id: &'static str,
-    /// What is extreme about it.
+    /// Description of its extreme.
     pub what: String,
     /// One body or two.
     pub bodies: Vec<Numbers>,
-    /// Discrete: also triangles that share a vertex.
+    /// Discrete: whether triangles that share a vertex count.
     pub adjacent: bool,
-    /// What must be found.
+    /// The required answer.
     pub finds: Finds,
 }
 
-/// All of them.
+/// Returns all scenes.
 pub fn scenes() -> Vec<Scene> {
     let mut all = still::scenes();
     all.extend(moving::scenes());
     all
 }
 
-/// By how much a time may be early, in parts of the step.
+/// Largest allowed earliness, as a fraction of the step.
 const EARLY: f64 = 1e-3;
 
 impl Scene {
@@ -117,17 +118,17 @@ impl Scene {
         Scene { id, what: what.into(), bodies, adjacent: false, finds }
     }
 
-    /// The question that is asked.
+    /// Returns the query of the scene.
     pub fn query(&self) -> Query {
         let discrete = matches!(self.finds, Finds::Pairs(_) | Finds::Oracle | Finds::OracleByFilter);
         let adjacent = self.adjacent;
         if discrete { Discrete::by(TriangleTest::Exact { adjacent }).into() } else { Query::continuous() }
     }
 
-    /// The bodies: one is tested against itself, two against each other only.
+    /// Returns the bodies: a single one is tested against itself, two only against each other.
     ///
     /// # Errors
-    /// [`Error::Input`] where a mesh is refused.
+    /// [`Error::Input`] if a mesh is refused.
     pub fn bodies(&self) -> Result<Vec<Body>, Error> {
         let meets = if self.bodies.len() > 1 {
             CollisionFilter::without_self_collision()
@@ -137,7 +138,7 @@ impl Scene {
         self.bodies.iter().map(|numbers| Ok(numbers.body()?.with_filter(meets))).collect()
     }
 
-    /// The triangle pairs of a discrete scene, by the list or the oracle.
+    /// Returns the triangle pairs of a discrete scene, by the list or the oracle.
     pub fn pairs(&self) -> Vec<[u32; 2]> {
         if let Finds::Pairs(pairs) = &self.finds {
             return pairs.clone();
@@ -163,7 +164,7 @@ impl Scene {
         pairs
     }
 
-    /// What is missed and what is wrong in an answer; nothing where it is right.
+    /// Returns the fault of an answer; `None` if it is right.
     pub fn judge(&self, found: &Contacts) -> Option<String> {
         match &self.finds {
             Finds::OracleByFilter if found.stats.uncertain > 0 => {
@@ -182,29 +183,31 @@ impl Scene {
             Finds::AtOnce(count) => {
                 let late = found.contacts().iter().find(|c| c.toi != 0.0);
                 late.map(|c| format!("late: {c:?}")).or_else(|| {
-                    (found.len() != *count).then(|| format!("{} contacts, not {count}", found.len()))
+                    (found.len() != *count).then(|| format!("got {} contacts, expected {count}", found.len()))
                 })
             }
         }
     }
 }
 
-/// The first pair that is missed or invented.
+/// Returns the first pair that is missed or invented.
 fn differ(found: &[[u32; 2]], truth: &[[u32; 2]]) -> Option<String> {
     let missed = truth.iter().find(|pair| !found.contains(pair)).map(|pair| format!("missed: {pair:?}"));
     missed
         .or_else(|| found.iter().find(|pair| !truth.contains(pair)).map(|pair| format!("invented: {pair:?}")))
 }
 
-/// Each contact within its time, and no certificate more.
+/// Checks that each contact has its time, and that no other is certified.
 fn contacts(found: &Contacts, truth: &[(Kind, u32, u32, f64)]) -> Option<String> {
     let of = |kind, a, b| {
         found.contacts().iter().find(move |c| (c.kind, c.feature_a, c.feature_b) == (kind, a, b))
     };
     let wrong = truth.iter().find_map(|&(kind, a, b, t)| match of(kind, a, b) {
         None => Some(format!("missed: {kind:?} {a} {b} at {t}")),
-        Some(c) if c.toi > t => Some(format!("late: {c:?}, not {t}")),
-        Some(c) if c.toi_upper < t || c.toi < t - EARLY => Some(format!("at another time: {c:?}, not {t}")),
+        Some(c) if c.toi > t => Some(format!("late: got {c:?}, expected {t}")),
+        Some(c) if c.toi_upper < t || c.toi < t - EARLY => {
+            Some(format!("wrong time: got {c:?}, expected {t}"))
+        }
         Some(_) => None,
     });
     let known =
@@ -212,15 +215,15 @@ fn contacts(found: &Contacts, truth: &[(Kind, u32, u32, f64)]) -> Option<String>
     wrong.or_else(|| found.contacts().iter().find(|c| !known(c)).map(|c| format!("invented: {c:?}")))
 }
 
-/// At least these, none before.
+/// Checks that at least these pairs are found, none before the time.
 fn includes(found: &Contacts, truth: &[Pair], first: f64) -> Option<String> {
     let row = |c: &nearmiss::Contact| (c.kind, c.bodies.map(|body| body.index()), c.feature_a, c.feature_b);
     let has = |k: &&Pair| found.contacts().iter().any(|c| row(c) == **k);
     let missed = truth.iter().find(|k| !has(k)).map(|k| format!("missed: {k:?}"));
     let earliest = found.earliest_toi();
     missed.or_else(|| match earliest {
-        Some(t) if t > first => Some(format!("late: {t}, not {first}")),
-        Some(t) if t < first - EARLY => Some(format!("too early: {t}, not {first}")),
+        Some(t) if t > first => Some(format!("late: got {t}, expected {first}")),
+        Some(t) if t < first - EARLY => Some(format!("too early: got {t}, expected {first}")),
         _ => None,
     })
 }

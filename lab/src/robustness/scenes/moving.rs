@@ -1,11 +1,12 @@
-//! Scenes in motion.
+//! Moving scenes.
 
 use super::Finds::{AtOnce, Contacts, EachVertex, Includes};
 use super::still::cuboid;
 use super::{Numbers, Scene};
 use nearmiss::contacts::Kind::{Ee, Vf};
 
-/// A square floor of `n` by `n` unit squares in z = 0, two triangles each, cut along the diagonal from (0, 0) to (1, 1).
+/// Returns a square floor of `n` by `n` unit squares in z = 0. Each has two triangles, cut along
+/// the diagonal from (0, 0) to (1, 1).
 fn floor(n: u32) -> Numbers {
     let at = |i: u32, j: u32| i * (n + 1) + j;
     let t0 = (0..=n).flat_map(|i| (0..=n).map(move |j| [f64::from(i), f64::from(j), 0.0])).collect();
@@ -16,7 +17,8 @@ fn floor(n: u32) -> Numbers {
     Numbers { t0, faces: faces.collect(), ..Numbers::default() }
 }
 
-/// Triangles with a tip, vertex 3 i, at each place and two corners above it, that fall from a height of 3 to -1.
+/// Returns falling triangles, from height 3 to -1. Each has a tip, vertex 3 i, at its place, and
+/// two corners above it.
 fn tips(places: &[[f64; 2]]) -> Numbers {
     let tip = |[x, y]: [f64; 2]| [[x, y, 3.0], [x, y + 0.125, 13.0], [x + 0.0625, y, 13.0]];
     Numbers::loose(&places.iter().map(|p| tip(*p)).collect::<Vec<_>>()).by([0.0, 0.0, -4.0])
@@ -34,7 +36,7 @@ fn shifted(of: Numbers, d: [f64; 3]) -> Numbers {
 pub fn scenes() -> Vec<Scene> {
     let point = |z: f64| Numbers::loose(&[[[0.75, 0.5, z]; 3]]).by([0.0, 0.0, -4.0]);
     let mut all = vec![
-        // A triangle that is a point falls on a face: its three vertices, and nothing else.
+        // A triangle that is a point falls on a face: only its three vertices meet it.
         Scene::new(
             "X12",
             "a triangle that is a point",
@@ -76,8 +78,8 @@ pub fn scenes() -> Vec<Scene> {
     all
 }
 
-/// Floats that single precision cannot be computed with: a point falls on a face, which the other frame or the other body
-/// takes to doubles.
+/// Returns scenes of f32 numbers whose computation overflows f32: a point falls on a face. The
+/// other frame or the other body needs f64.
 fn huge() -> Vec<Scene> {
     const MOST: f64 = f32::MAX as f64;
     let face = |s: f64| Numbers::loose(&[[[-s, -s, 0.0], [s, -s, 0.0], [0.0, s, 0.0]]]);
@@ -99,14 +101,14 @@ fn huge() -> Vec<Scene> {
     all
 }
 
-/// Boxes that run into each other, alone and within a huge common motion (FCL#555).
+/// Boxes that collide, alone and within a huge common motion (FCL#555).
 fn head_on() -> Vec<Scene> {
     let boxes = |common: f64| {
         let small = cuboid([1.0, 0.25, 0.25], [2.0, 0.75, 0.75]).by([common - 1.0, 0.0, common]);
         vec![wide(cuboid([0.0; 3], [0.5, 1.0, 1.0]).by([common, 0.0, common])), wide(small)]
     };
-    // The near side of the small box, x = 1, meets the side x = 1/2 of the large one at a half: corner 4 with
-    // the upper triangle of that side, corner 2 with the lower.
+    // The near side of the small box, x = 1, meets the side x = 1/2 of the large one at t = 1/2.
+    // Corner 4 meets the upper triangle of that side, corner 2 the lower one.
     let scene = |what, common: f64| {
         Scene::new(
             "FCL#555",
@@ -141,8 +143,8 @@ fn together() -> Vec<Scene> {
         faces: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
         ..Numbers::default()
     };
-    // Of a tetrahedron and itself: each vertex with the three faces at it, both ways; each edge with itself and the four
-    // at its ends.
+    // A tetrahedron and itself: each vertex meets the three faces at it, both ways. Each edge meets
+    // itself and the four at its ends.
     let (vf, ee) = (4 * 3, 6 + 6 * 4);
     let edges = Numbers { t0: vec![[0.0; 3], [4.0, 0.0, 0.0]], faces: vec![[0, 1, 1]], ..Numbers::default() };
     let aside = Numbers { t0: vec![[4.0, 0.0, 0.0], [9.0, 0.0, 0.0]], ..edges.clone() };

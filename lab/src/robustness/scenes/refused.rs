@@ -1,21 +1,22 @@
-//! What must be refused, with words that name it; and what looks like it and must not be.
+//! Bodies that must be refused, with the words of the message; and similar ones that must be
+//! accepted.
 
 use super::Numbers;
 
-/// Numbers and the words of their refusal; none where they must be accepted.
+/// Numbers and words of their refusal; no words if they must be accepted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refused {
-    /// Its name in `docs/internals/robustness.md`.
+    /// Its id in `docs/internals/robustness.md`.
     pub id: &'static str,
-    /// What is extreme about it.
+    /// Description of its extreme.
     pub what: &'static str,
     /// One body.
     pub body: Numbers,
-    /// Parts of the message.
+    /// Required parts of the message.
     pub words: &'static [&'static str],
 }
 
-/// All of them.
+/// Returns all rows.
 pub fn refused() -> Vec<Refused> {
     const NAN: f64 = f64::NAN;
     const INF: f64 = f64::INFINITY;

@@ -70,7 +70,8 @@ pub const TRIANGLES: [(&str, &str, Triangle, Triangle, bool, bool); 7] = [
     ),
 ];
 
-/// libigl/libigl#2381: a planar patch, subdivided twice, whose triangles do not meet unless they share a corner.
+/// libigl/libigl#2381: a planar patch, subdivided twice. Its triangles only meet if they share a
+/// corner.
 pub const PATCH: [[f64; 3]; 15] = [
     [0.280039012432098, 0.827663004398346, 0.463775008916855],
     [0.33890101313591, 0.788042008876801, 0.488126993179321],
@@ -88,7 +89,7 @@ pub const PATCH: [[f64; 3]; 15] = [
     [0.318973511457443, 0.793027758598328, 0.483279250562191],
     [0.313761509954929, 0.7881082594394687, 0.4845195040106775],
 ];
-/// Its triangles.
+/// Triangles of the patch.
 pub const PATCH_FACES: [[u32; 3]; 16] = [
     [2, 11, 10],
     [1, 8, 9],

@@ -1,4 +1,4 @@
-//! Scenes that stand still.
+//! Still scenes.
 
 use super::Finds::{Oracle, OracleByFilter, Pairs};
 use super::{Numbers, PATCH, PATCH_FACES, Scene, TRIANGLES};
@@ -14,13 +14,13 @@ pub fn scenes() -> Vec<Scene> {
     all
 }
 
-/// A triangle of side `size` whose lower corner is at `p`, in a plane across z.
+/// Returns a triangle of side `size` with lower corner `p`, in a plane across z.
 fn flat(p: [f64; 3], size: f64) -> Triangle {
     let [x, y, z] = p;
     [[x, y, z], [x + size, y, z], [x, y + size, z]]
 }
 
-/// The corners of a box and its twelve triangles.
+/// Returns the corners of a box and its twelve triangles.
 pub fn cuboid(lo: [f64; 3], hi: [f64; 3]) -> Numbers {
     let corner = |i: usize| [0, 1, 2].map(|k| if i >> k & 1 == 1 { hi[k] } else { lo[k] });
     let sides = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
@@ -31,12 +31,12 @@ pub fn cuboid(lo: [f64; 3], hi: [f64; 3]) -> Numbers {
     }
 }
 
-/// Each triangle with vertices of its own.
+/// Returns each triangle with its own vertices.
 fn unwelded(of: &Numbers) -> Numbers {
     Numbers::loose(&(0..of.faces.len()).map(|f| of.triangle(f)).collect::<Vec<_>>())
 }
 
-/// Triangles that are points or segments, and sizes that do not go together.
+/// Triangles that are points or segments, and pairs of very different sizes.
 fn degenerate() -> Vec<Scene> {
     let face = flat([-1.0, -1.0, 0.0], 4.0);
     let point = |p: [f64; 3]| [p; 3];
@@ -81,7 +81,7 @@ fn degenerate() -> Vec<Scene> {
     ]
 }
 
-/// Floats that single precision cannot be computed with: they are kept as doubles.
+/// Scenes of f32 numbers whose computation overflows f32: they are stored in f64.
 fn huge() -> Vec<Scene> {
     const MOST: f64 = f32::MAX as f64;
     let face = flat([-1.0, -1.0, 0.0], 4.0);
@@ -94,7 +94,8 @@ fn huge() -> Vec<Scene> {
         [[3.0, -1.0, 0.0], [3.0, -1.0, 7.0], [3.0, -1.0, 7.0]],
         [[1.0, 1.0, -f64::from(f32::EPSILON)], [1.0, 1.0, -1.0], [2.0, 1.0, -1.0]],
     ];
-    // From one end of the floats to the other: differences are no floats. A point, and what is far smaller, on it.
+    // From one end of the floats to the other: differences overflow. A point and a far smaller
+    // triangle are on it.
     let across = [[-MOST, -MOST, 0.0], [MOST, -MOST, 0.0], [0.0, MOST, 0.0]];
     let most = [
         across,
@@ -112,7 +113,7 @@ fn huge() -> Vec<Scene> {
     all
 }
 
-/// Triangles that share vertices, by number or by place.
+/// Triangles that share vertices, by index or by position.
 fn neighbours() -> Vec<Scene> {
     let adjacent = |scene: Scene| Scene { adjacent: true, ..scene };
     let of = |t0: &[[f64; 3]], faces: &[[u32; 3]]| {
@@ -133,7 +134,7 @@ fn neighbours() -> Vec<Scene> {
     let fold =
         [[0.0; 3], [4.0, 0.0, 0.0], [1.0, 3.0, 0.0], [2.0, 2.0, 0.0], [2.0, -2.0, 0.0], [2.0, 0.0, 2.0]];
     let folded = [[0, 1, 2], [1, 0, 3], [0, 1, 4], [0, 1, 5]];
-    // Three faces at one edge, pierced by one more.
+    // Three faces at one edge, pierced by a fourth.
     let fin = [
         [0.0; 3],
         [0.0, 0.0, 4.0],
@@ -154,12 +155,7 @@ fn neighbours() -> Vec<Scene> {
             of(&cross, &crossing),
             Pairs(vec![[0, 1]]),
         )),
-        Scene::new(
-            "X48",
-            "a common vertex, and neighbours are not asked for",
-            of(&cross, &crossing),
-            Pairs(vec![]),
-        ),
+        Scene::new("X48", "a common vertex, adjacent pairs excluded", of(&cross, &crossing), Pairs(vec![])),
         adjacent(Scene::new(
             "X49",
             "a common edge: folded, opposite, upright",
@@ -173,7 +169,8 @@ fn neighbours() -> Vec<Scene> {
     ]
 }
 
-/// A strip of eight squares around the z axis that turns over once: coordinates rounded to 1/1024.
+/// Returns a strip of eight squares around the z axis that turns over once, with coordinates
+/// rounded to 1/1024.
 fn moebius() -> Numbers {
     let turn = |i: usize| std::f64::consts::PI * i as f64 / 8.0;
     let round = |x: f64| (x * 1024.0).round() / 1024.0;
@@ -186,20 +183,20 @@ fn moebius() -> Numbers {
         .collect();
     let faces = (0..8u32).flat_map(|i| {
         let (a, b) = (2 * i, 2 * i + 1);
-        // The last square joins the first with its sides exchanged.
+        // The last square joins the first with its sides swapped.
         let (c, d) = if i == 7 { (1, 0) } else { (2 * i + 2, 2 * i + 3) };
         [[a, b, c], [b, d, c]]
     });
     Numbers { t0, faces: faces.collect(), ..Numbers::default() }
 }
 
-/// Needles through the strip's middle.
+/// Returns needles through the strip's middle.
 fn spikes() -> Numbers {
     let at = |x: f64, y: f64| [[x, y, -3.0], [x, y, 3.0], [x + 0.25, y, 3.0]];
     Numbers::loose(&[at(4.0, 0.5), at(-4.0, 0.25), at(2.75, -2.75), at(0.0, 8.0)])
 }
 
-/// Cubes with flush faces: along the axes, where zeros are exact, and turned, where rounding decides.
+/// Cubes with flush faces: along the axes, with exact zeros, and rotated, so that rounding decides.
 fn flush() -> Vec<Scene> {
     let cubes = || {
         let mut t0 = Vec::new();
@@ -211,7 +208,8 @@ fn flush() -> Vec<Scene> {
         }
         Numbers { t0, faces, ..Numbers::default() }
     };
-    // Right angles at the origin, each in a plane of two axes: they touch along legs, never along a slanted side.
+    // Right triangles at the origin, each in a plane of two axes: they touch along legs, never
+    // along a hypotenuse.
     let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let legs = [[[0.0; 3], x, y], [[0.0; 3], x, z], [[0.0; 3], y, z], [[0.0; 3], [-1.0, 0.0, 0.0], y]];
     let (c, s) = (3f64.sqrt() / 2.0, 0.5);
@@ -231,7 +229,7 @@ fn flush() -> Vec<Scene> {
     ]
 }
 
-/// Bodies of few triangles, and places that strain a tree.
+/// Bodies of few triangles, and positions that are hard for a tree.
 fn few() -> Vec<Scene> {
     let one = |x: f64| flat([x, 0.0, 0.0], 1.0);
     let of = |n: usize| Numbers::loose(&vec![one(0.0); n]);

@@ -1,11 +1,13 @@
 //! Keeps a cloth free of intersections by nearmiss's own detection.
 //!
-//! A substep is proposed as a straight motion of every vertex. What meets on the way is pushed apart; what still meets
-//! is held, and what meets that, in zones that grow: held vertices stay where they began or, in a cloth that hangs from
-//! a body, go rigidly with the body. All vertices going so keep apart whatever is apart: from the ends of the step,
-//! straight lines between them are an affine map. The end is accepted only if the exact discrete query finds no pair of
-//! triangles that meet; else nothing moves at all. The beginning had no such pair, so by induction no accepted state has
-//! one, whatever the continuous solver may have missed.
+//! A substep is proposed as a straight motion of every vertex. Features that meet on the way are
+//! pushed apart. Features that still meet are held, and those that meet held ones are held next, in
+//! growing zones. Held vertices stay at their start or, in a cloth that hangs from a body, move
+//! rigidly with the body. If all vertices move so, features that are apart stay apart: straight
+//! lines between the ends of the step are an affine map. The end is accepted only if the exact
+//! discrete query finds no pair of triangles that meet; else nothing moves at all. The start had no
+//! such pair. By induction no accepted state has one, even if the continuous solver missed
+//! contacts.
 
 use super::V;
 use crate::OneQuery;
@@ -16,17 +18,17 @@ use nearmiss::mesh::{Body, Mesh, Positions, Topology};
 use nearmiss::query::{Continuous, ContinuousSolver, Discrete, Precision, Query, TriangleTest};
 use nearmiss_kernels::math::Vec3;
 
-/// Rounds that push what meets apart.
+/// Rounds that push meeting features apart.
 const PUSHES: u32 = 4;
-/// Rounds that hold what still meets; then everything is held.
+/// Rounds that hold features that still meet; after them all are held.
 const HOLDS: u32 = 24;
-/// How far apart features that would have met are put, in mean edges.
+/// Distance of features after a push, in mean edges.
 const GAP: f64 = 0.02;
 
-/// What became of a proposed step.
+/// Outcome of a proposed step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Outcome {
-    /// It took place, perhaps changed.
+    /// The step was taken, possibly changed.
     Moved,
     /// Nothing moved.
     Stopped,
@@ -41,21 +43,23 @@ pub(super) struct Guard {
     gap: f64,
 }
 
-/// The cubic: it lists no near misses, which would be pushed apart without need. What it misses, [`meeting`] finds.
+/// The cubic: it lists no near misses, which would be pushed apart without need. [`meeting`] finds
+/// the contacts that it misses.
 fn passing() -> Query {
     Continuous::by(ContinuousSolver::Cubic(Precision::F64)).into()
 }
 
-/// Every meeting counts, that of triangles with a common vertex too.
+/// All pairs that meet, including triangles with a common vertex.
 fn meeting() -> Query {
     Query::from(Discrete::by(TriangleTest::Exact { adjacent: true }))
 }
 
 impl Guard {
-    /// Watches a mesh from positions `x` on, which it rounds to floats: what is checked is what is written.
+    /// Makes a guard of a mesh at positions `x`, which it rounds to floats: the checked positions
+    /// are the written ones.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] if triangles meet already; those of detection.
+    /// [`Error::InvalidArgument`] if triangles meet already; errors of detection.
     pub fn new(name: &str, x: &mut [V], faces: &[[u32; 3]]) -> Result<Guard, Error> {
         round(x);
         let edges = Topology::new(faces, x.len()).edges;
@@ -77,19 +81,19 @@ impl Guard {
         };
         if !guard.is_free(x)? {
             return Err(Error::InvalidArgument {
-                what: format!("{name}: triangles meet in the first frame, so nothing can keep them apart"),
-                advice: "ask for the scene without contact".into(),
+                what: format!("{name}: triangles meet in the first frame, so contact cannot be kept"),
+                advice: "use the scene without contact".into(),
             });
         }
         Ok(guard)
     }
 
-    /// Changes the step from `before`, which is free of intersections and in floats, to `x` so that it ends free and in
-    /// floats too. `held`: where held vertices go; `w`: inverse masses, a vertex of 0 goes where it must, or nothing
-    /// moves.
+    /// Changes the step from `before` to `x` so that it ends free of intersections and in floats,
+    /// as `before` is. `held` has the ends of held vertices. `w` has inverse masses: a vertex of 0
+    /// goes to its prescribed end, or nothing moves.
     ///
     /// # Errors
-    /// Those of detection.
+    /// Errors of detection.
     pub fn limit(&mut self, before: &[V], x: &mut [V], held: &[V], w: &[f64]) -> Result<Outcome, Error> {
         let mut is_held = vec![false; x.len()];
         for turn in 0..=PUSHES + HOLDS {
@@ -110,7 +114,7 @@ impl Guard {
                 }
             }
             if contacts.is_empty() {
-                // The solver missed something: no zone is known, so all of them.
+                // The solver missed a contact: no zone is known, so all vertices are held.
                 is_held.iter_mut().zip(w).for_each(|(is_held, &w)| *is_held = w > 0.0);
             }
             hold(x, held, |v| is_held[v]);
@@ -130,8 +134,8 @@ impl Guard {
         Ok(self.discrete.detect()?.is_empty())
     }
 
-    /// The four vertices of a contact and the weights that make its two points' difference when they meet: positive on
-    /// the first feature, negative on the second.
+    /// Returns the four vertices of a contact, and weights that give the difference of its two
+    /// points when they meet. Weights are positive on the first feature, negative on the second.
     fn stencil(&self, contact: &Contact, before: &[V], x: &[V]) -> ([usize; 4], [f64; 4]) {
         let (a, b) = (contact.feature_a as usize, contact.feature_b as usize);
         let at = |v: usize| before[v] + (x[v] - before[v]) * contact.toi;
@@ -142,7 +146,7 @@ impl Guard {
             let (d, e, f) = (q - p, s - r, p - r);
             let (dd, de, ee) = (d.dot(d), d.dot(e), e.dot(e));
             let across = dd * ee - de * de;
-            // Parallel edges: their middles will do.
+            // Parallel edges: their midpoints suffice.
             let along = if across > 0.0 { (de * e.dot(f) - ee * d.dot(f)) / across } else { 0.5 };
             let along = along.clamp(0.0, 1.0);
             let other = if ee > 0.0 { ((e.dot(f) + along * de) / ee).clamp(0.0, 1.0) } else { 0.5 };
@@ -158,7 +162,8 @@ impl Guard {
         }
     }
 
-    /// Moves the ends of the step so that the two points are the gap apart, on the side where they began.
+    /// Moves the ends of the step so that the two points have the gap between them, on their
+    /// original sides.
     fn push(
         &self,
         vertices: &[usize; 4],
@@ -172,7 +177,7 @@ impl Guard {
             let parts = vertices.iter().zip(weights).map(|(&v, &weight)| at(v) * weight);
             parts.fold(Vec3([0.0; 3]), |sum, part| sum + part)
         };
-        // Where they met, the difference of the points is zero; just before, it shows the way back.
+        // At the contact the difference of the points is zero; just before, it gives the direction.
         let start = sum(&|v| before[v]);
         let met = vertices.map(|v| before[v] + (x[v] - before[v]) * toi);
         let mut normal = if weights[1] > 0.0 || weights[0] != 1.0 {
@@ -201,12 +206,12 @@ impl Guard {
     }
 }
 
-/// Puts the vertices that `which` names where held ones go.
+/// Moves the vertices that `which` selects to their held ends.
 fn hold(x: &mut [V], held: &[V], which: impl Fn(usize) -> bool) {
     x.iter_mut().zip(held).enumerate().filter(|(v, _)| which(*v)).for_each(|(_, (x, held))| *x = *held);
 }
 
-/// To floats and back.
+/// Rounds to floats.
 fn round(x: &mut [V]) {
     x.iter_mut().for_each(|p| *p = p.map(|c| f64::from(c as f32)));
 }
@@ -221,7 +226,7 @@ mod tests {
 
     use super::*;
 
-    /// A triangle at that height above another, which is much larger.
+    /// Returns a triangle at that height above another, which is much larger.
     fn above(height: f64) -> (Vec<V>, Vec<[u32; 3]>) {
         let low = [[-4.0, -4.0, 0.0], [4.0, -4.0, 0.0], [0.0, 6.0, 0.0]];
         let high = [[-1.0, 0.0, height], [1.0, 0.0, height], [0.0, 1.0, height + 0.5]];

@@ -1,30 +1,31 @@
-//! What holds a cloth together: lengths between two vertices.
+//! The links of a cloth: lengths between two vertices.
 
 use super::V;
 
-/// Two vertices that want to be `rest` apart.
+/// A link between two vertices with rest length `rest`.
 #[derive(Clone, Copy)]
 pub(super) struct Link {
     a: u32,
     b: u32,
     rest: f64,
-    /// How far the link yields: 0 is rigid. In units of (frame)^2 per unit of mass.
+    /// Compliance of the link: 0 is rigid. In units of (frame)^2 per unit of mass.
     yields: f64,
 }
 
-/// How a cloth yields, in the units of [`Link`].
+/// Compliance of a cloth, in the units of [`Link`].
 #[derive(Clone, Copy)]
 pub(in super::super) struct Fabric {
-    /// Along its threads.
+    /// Compliance along its threads.
     pub stretch: f64,
-    /// Along the diagonals of its cells.
+    /// Compliance along the diagonals of its cells.
     pub shear: f64,
-    /// Between threads that are two apart.
+    /// Compliance between threads that are two apart.
     pub bend: f64,
 }
 
-/// The links of a woven cloth whose vertices stand in rows of equal length, at rest as it lies in `x`; in a `closed` one
-/// the last vertex of a row is beside the first. Six a vertex, row by row: that is the order in which they act.
+/// Makes the links of a woven cloth with rows of equal length, at rest in `x`. In a `closed` cloth
+/// the last vertex of a row is next to the first. Six links per vertex, row by row: they act in
+/// that order.
 pub(super) fn weave(rows: &[Vec<u32>], closed: bool, fabric: Fabric, x: &[V]) -> Vec<Link> {
     let columns = rows.first().map_or(0, Vec::len);
     let at = |row: usize, column: usize| {
@@ -55,8 +56,9 @@ pub(super) fn weave(rows: &[Vec<u32>], closed: bool, fabric: Fabric, x: &[V]) ->
 }
 
 impl Link {
-    /// Moves both ends towards the rest length: one step of XPBD (Macklin, Mueller and Chentanez 2016) with a fresh
-    /// multiplier, as small substeps allow (Macklin et al. 2019). `w`: inverse masses; `per_step`: 1 / h^2.
+    /// Moves both ends towards the rest length. This is one step of XPBD (Macklin, Mueller and
+    /// Chentanez 2016) with a fresh multiplier, as small substeps allow (Macklin et al. 2019). `w`:
+    /// inverse masses; `per_step`: 1 / h^2.
     #[inline]
     pub(super) fn pull(&self, x: &mut [V], w: &[f64], per_step: f64) {
         let (a, b) = (self.a as usize, self.b as usize);

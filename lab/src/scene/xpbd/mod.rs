@@ -1,8 +1,8 @@
 //! A small cloth solver on the CPU: extended position-based dynamics in small substeps.
 //!
-//! One thread, one order: the same bits everywhere. Lengths are what a cloth is made of ([`links`]); rigid bodies and a
-//! floor stop it ([`pose`]); where a scene asks for it, [`guard`] keeps it free of intersections. Time is counted in
-//! frames. Cost: about 10 ns a link and substep.
+//! One thread, one order: the same bits everywhere. A cloth is made of lengths ([`links`]); rigid
+//! bodies and a floor stop it ([`pose`]). If a scene enables it, [`guard`] keeps it free of
+//! intersections. Time is counted in frames. Cost: about 10 ns a link and substep.
 
 mod guard;
 mod links;
@@ -20,7 +20,7 @@ use nearmiss_kernels::math::Vec3;
 /// A point or a vector.
 pub(super) type V = Vec3<f64>;
 
-/// Substeps of a frame.
+/// Substeps per frame.
 const SUBSTEPS: u32 = 10;
 
 /// Cloths and the rigid body that carries or stops them.
@@ -28,9 +28,9 @@ pub(super) struct World {
     x: Vec<V>,
     before: Vec<V>,
     velocity: Vec<V>,
-    /// Inverse masses: 1, or 0 of a vertex that the body carries.
+    /// Inverse masses: 1, or 0 for a vertex that the body carries.
     w: Vec<f64>,
-    /// Vertices that the body carries, where they are in its frame.
+    /// Vertices that the body carries, with their positions in its frame.
     carried: Vec<(u32, V)>,
     /// Whether the body carries a part of a cloth.
     hung: bool,
@@ -41,15 +41,15 @@ pub(super) struct World {
     guard: Option<Guard>,
 }
 
-/// What a scene sets.
+/// Parameters of a scene.
 #[derive(Clone, Copy)]
 pub(super) struct Setting {
-    /// Where the body is at a time, in frames.
+    /// Pose of the body at a time, in frames.
     pub pose: fn(f64) -> Pose,
     pub obstacles: Obstacles,
-    /// Speed gained a frame, downward.
+    /// Speed gained per frame, downward.
     pub gravity: f64,
-    /// Part of its speed that a vertex loses in a frame.
+    /// Fraction of its speed that a vertex loses per frame.
     pub drag: f64,
 }
 
@@ -70,8 +70,8 @@ impl World {
         }
     }
 
-    /// Adds a cloth whose points stand in rows, at rest as they are given, in the body's frame at time 0. The body
-    /// carries the first row if it is `hung`.
+    /// Adds a cloth with its points in rows, at rest in the given positions, in the body's frame at
+    /// time 0. The body carries the first row if it is `hung`.
     pub fn cloth(&mut self, rows: &[Vec<[f64; 3]>], closed: bool, hung: bool, fabric: Fabric) {
         self.hung |= hung;
         let pose = (self.setting.pose)(0.0);
@@ -110,12 +110,12 @@ impl World {
         &self.faces
     }
 
-    /// The present positions, rounded once.
+    /// Returns the current positions, rounded once.
     pub fn positions(&self) -> Vec<[f32; 3]> {
         self.x.iter().map(|p| p.0.map(|x| x as f32)).collect()
     }
 
-    /// From now on no triangle may pass through another.
+    /// From now on keeps every triangle from passing through another.
     ///
     /// # Errors
     /// As [`Guard::new`].
@@ -124,10 +124,10 @@ impl World {
         Ok(())
     }
 
-    /// One frame.
+    /// Advances by one frame.
     ///
     /// # Errors
-    /// Those of the guard's detection.
+    /// Errors of the guard's detection.
     pub fn advance(&mut self) -> Result<(), Error> {
         let h = 1.0 / f64::from(SUBSTEPS);
         (0..SUBSTEPS).try_for_each(|_| self.step(h))
@@ -146,7 +146,7 @@ impl World {
         for &(vertex, p) in &self.carried {
             self.x[vertex as usize] = to.world(p);
         }
-        // Forward, then backward: a sweep that is its own mirror image damps, where one direction alone, or each in turn,
+        // Forward, then backward: a symmetric sweep damps. One direction alone, or each in turn,
         // feeds waves that run along it.
         let per_step = 1.0 / (h * h);
         let (x, w) = (&mut self.x, &self.w);
@@ -159,12 +159,12 @@ impl World {
         }
         let mut stopped = false;
         if let Some(guard) = &mut self.guard {
-            // What hangs from the body is held by going with it.
+            // A hanging cloth is held by moving it with the body.
             let with_body = |&p: &V| if self.hung { to.world(from.local(p)) } else { p };
             let held: Vec<V> = self.before.iter().map(with_body).collect();
             stopped = guard.limit(&self.before, &mut self.x, &held, &self.w)? == Outcome::Stopped;
         }
-        // A step that was stopped did not take place: the body stays as well.
+        // A stopped step did not take place: the body stays as well.
         self.time += if stopped { 0.0 } else { h };
         for ((v, &x), &before) in self.velocity.iter_mut().zip(&self.x).zip(&self.before) {
             *v = (x - before) * (1.0 / h);

@@ -1,10 +1,10 @@
-//! Rigid bodies that cloths lie on or hang from.
+//! Rigid bodies that carry cloths.
 
 use super::super::turn::circle;
 use super::V;
 use nearmiss_kernels::math::Vec3;
 
-/// Where a rigid body is: turned about the z axis, then shifted.
+/// Pose of a rigid body: a rotation about the z axis, then a shift.
 #[derive(Clone, Copy)]
 pub(in super::super) struct Pose {
     cosine: f64,
@@ -13,7 +13,7 @@ pub(in super::super) struct Pose {
 }
 
 impl Pose {
-    /// So many turns about z, then the shift.
+    /// Makes a pose of so many turns about z, then the shift.
     pub fn new(turns: f64, shift: [f64; 3]) -> Pose {
         let [cosine, sine] = circle(turns);
         Pose { cosine, sine, shift: Vec3(shift) }
@@ -23,31 +23,32 @@ impl Pose {
         Vec3([self.cosine * p[0] - sine * p[1], sine * p[0] + self.cosine * p[1], p[2]])
     }
 
-    /// From the body's own frame.
+    /// Maps from the body's own frame.
     pub fn world(&self, p: V) -> V {
         self.turned(p, self.sine) + self.shift
     }
 
-    /// Into the body's own frame.
+    /// Maps into the body's own frame.
     pub fn local(&self, p: V) -> V {
         self.turned(p - self.shift, -self.sine)
     }
 }
 
-/// What stops a cloth: an ellipsoid that is round about z, in the body's frame, and a floor that rests.
+/// Obstacles of a cloth: an ellipsoid, round about z, in the body's frame, and a floor that rests.
 #[derive(Clone, Copy)]
 pub(in super::super) struct Obstacles {
     /// The ellipsoid's centre (on the z axis), its radius across and along z.
     pub ellipsoid: Option<(V, [f64; 2])>,
     /// The floor's height.
     pub floor: Option<f64>,
-    /// Coulomb's friction on the ellipsoid and on the floor: how much a vertex is held for each unit that it is pushed
-    /// out.
+    /// Coulomb friction on the ellipsoid and on the floor: how much a vertex is held per unit that
+    /// it is pushed out.
     pub friction: [f64; 2],
 }
 
 impl Obstacles {
-    /// Where `x` goes, which was at `before` when the body was at `from`, now that the body is at `to`.
+    /// Returns the end of `x`, which was at `before` when the body was at `from`, now that the body
+    /// is at `to`.
     #[inline]
     pub(super) fn push(&self, x: V, before: V, from: &Pose, to: &Pose) -> V {
         let mut x = x;
@@ -74,7 +75,7 @@ impl Obstacles {
     }
 }
 
-/// A point on a surface that has slipped along it: held back by friction, by `most`.
+/// Returns a point on a surface after friction has held back its slip, by at most `most`.
 fn held(on: V, slip: V, normal: V, most: f64) -> V {
     let slip = slip - normal * slip.dot(normal);
     let length = slip.dot(slip).sqrt();

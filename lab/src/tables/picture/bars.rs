@@ -7,11 +7,11 @@ use nearmiss::error::Error;
 
 /// One pair of bars, in milliseconds.
 pub struct Bar {
-    /// What is timed.
+    /// Name of the timed work.
     pub label: String,
-    /// Ours.
+    /// Our milliseconds.
     pub ours: f64,
-    /// The thesis's.
+    /// The thesis's milliseconds.
     pub theirs: Option<f64>,
 }
 
@@ -23,12 +23,12 @@ pub struct Panel {
     pub bars: Vec<Bar>,
 }
 
-/// Height of a bar, of a pair with its gap, and of what a panel has besides.
+/// Height of a bar, of a pair with its gap, and of the rest of a panel.
 const BAR: i32 = 11;
 const PAIR: i32 = 30;
 const PANEL: i32 = 66;
 
-/// Powers of ten that hold all values, at least one apart.
+/// Returns powers of ten around all values, at least one apart.
 fn decades(values: impl Iterator<Item = f64>) -> (i32, i32) {
     let (low, high) = values
         .filter(|x| x.is_finite() && *x > 0.0)
@@ -37,15 +37,15 @@ fn decades(values: impl Iterator<Item = f64>) -> (i32, i32) {
         return (-1, 0);
     }
     let from = low.log10().floor() as i32;
-    // A bar of the smallest value must be seen.
+    // A bar of the smallest value must be visible.
     let from = if low.log10() - f64::from(from) < 0.1 { from - 1 } else { from };
     (from, (high.log10().ceil() as i32).max(from + 1))
 }
 
-/// The picture. All panels share one scale.
+/// Draws the picture. All panels share one scale.
 ///
 /// # Errors
-/// [`Error::Bug`] where it cannot be drawn.
+/// [`Error::Bug`] if it cannot be drawn.
 pub fn bars(title: &str, device: &str, panels: &[Panel]) -> Result<String, Error> {
     let all = panels.iter().flat_map(|p| &p.bars);
     let (from, to) = decades(all.flat_map(|b| [b.ours, b.theirs.unwrap_or(b.ours)]));
@@ -62,7 +62,7 @@ pub fn bars(title: &str, device: &str, panels: &[Panel]) -> Result<String, Error
     })
 }
 
-/// The colour of their bars, darkened so that it can be read as text.
+/// The colour of the thesis's bars, darkened so that it is legible as text.
 const DARK: plotters::style::RGBColor = plotters::style::RGBColor(160, 105, 0);
 
 fn panel(sheet: &Sheet, panel: &Panel, top: i32, (from, to): (i32, i32)) -> Drawn {

@@ -1,6 +1,6 @@
-//! Judges a picture by its SVG: texts over each other, or beyond the sheet.
+//! Checks a picture's SVG for texts over each other, or beyond the sheet.
 
-/// A text and the least rectangle that it takes in a usual font: left, top, right, bottom.
+/// A text and its smallest rectangle in a usual font: left, top, right, bottom.
 struct Text {
     text: String,
     area: [f64; 4],
@@ -28,7 +28,7 @@ fn texts(svg: &str) -> Vec<Text> {
     svg.split("<text").skip(1).map(|part| one(&format!(" {part}"))).collect()
 }
 
-/// What is wrong with a picture's texts, in words.
+/// Returns the faults of a picture's texts, in words.
 pub fn faults(svg: &str) -> Vec<String> {
     let all = texts(svg);
     assert!(!all.is_empty(), "a picture has texts");

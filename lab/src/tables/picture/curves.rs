@@ -1,4 +1,4 @@
-//! Curves over the part of a step: what a front saves.
+//! Curves over the fraction of a step: the savings of a front.
 
 use super::labels::{self, End};
 use super::{At, Drawn, FAINT, GRID, INK, Mark, OURS, Sheet, THEIRS, head_height, sheet};
@@ -6,33 +6,33 @@ use nearmiss::error::Error;
 
 /// One curve.
 pub struct Curve {
-    /// What it is of.
+    /// Name of the curve.
     pub label: String,
-    /// Part of the step, 0 to 1, and percent.
+    /// Fraction of the step, 0 to 1, and percent.
     pub points: Vec<(f64, f64)>,
-    /// Whether it is drawn apart: time, where the others are node tests.
+    /// Whether the curve shows time, in another style; the others show node tests.
     pub is_time: bool,
 }
 
 /// Curves that share a frame.
 pub struct Chart {
-    /// The scene, and how it was asked.
+    /// The scene, and the way that it ran.
     pub title: String,
     /// The curves.
     pub curves: Vec<Curve>,
 }
 
-/// Height of a chart's frame, and of what it has besides.
+/// Height of a chart's frame, and of the rest of a chart.
 const FRAME: i32 = 170;
 const CHART: i32 = 75;
-/// Where frames begin and end; names stand to the right.
+/// Left and right sides of frames; names are to the right.
 const LEFT: i32 = 80;
 const RIGHT: i32 = 660;
 
-/// The picture: percent of what the same frame costs without a front, and `bound` as a line.
+/// Draws the picture: percent of the cost of the same frame without a front, and `bound` as a line.
 ///
 /// # Errors
-/// [`Error::Bug`] where it cannot be drawn.
+/// [`Error::Bug`] if it cannot be drawn.
 pub fn curves(
     title: &str,
     device: &str,

@@ -1,29 +1,31 @@
-//! Names of lines at their ends, a line of text apart.
+//! Names of lines at their ends, at least a line of text apart.
 
 use super::{At, Drawn, INK, Sheet};
 use plotters::style::RGBColor;
 
-/// Pixels between the middles of two names below each other.
+/// Least distance between the middles of two names, in pixels.
 const LINE: i32 = 14;
-/// Their size.
+/// Font size of the names.
 const SIZE: i32 = 12;
 
-/// About how wide a text of that size is, in pixels: rather too wide, fonts differ.
+/// Returns the approximate width of a text of that size, in pixels. It is an upper estimate, as
+/// fonts differ.
 pub fn width(text: &str, size: i32) -> i32 {
     text.chars().count() as i32 * size * 60 / 100 + 2
 }
 
 /// The end of a line, and its name.
 pub struct End<'a> {
-    /// In pixels.
+    /// Its position in pixels.
     pub at: (i32, i32),
-    /// The line's.
+    /// Colour of the line.
     pub colour: RGBColor,
-    /// What it is of.
+    /// Name of the line.
     pub label: &'a str,
 }
 
-/// Names in a column from `left`, each beside its line's end or led to it, none below `bottom`.
+/// Draws names in a column from `left`, each next to its line's end or joined to it, none below
+/// `bottom`.
 pub fn draw(sheet: &Sheet, mut ends: Vec<End>, left: i32, bottom: i32) -> Drawn {
     ends.sort_by_key(|end| end.at.1);
     let heights = apart(ends.iter().map(|end| end.at.1).collect(), bottom);
@@ -34,7 +36,7 @@ pub fn draw(sheet: &Sheet, mut ends: Vec<End>, left: i32, bottom: i32) -> Drawn 
     Ok(())
 }
 
-/// Heights, ascending, moved apart so that a line of text fits between any two, none below `bottom`.
+/// Moves ascending heights apart so that a line of text fits between any two, none below `bottom`.
 fn apart(mut heights: Vec<i32>, bottom: i32) -> Vec<i32> {
     for i in 1..heights.len() {
         heights[i] = heights[i].max(heights[i - 1] + LINE);

@@ -1,5 +1,5 @@
-//! Pictures as SVG text: pure Rust, no fonts of this machine. Colours are those of Okabe and Ito, which people tell apart
-//! who see colours differently; every bar and line is labelled where it stands.
+//! Pictures as SVG text: pure Rust, without fonts of the machine. Colours are those of Okabe and
+//! Ito, which remain distinct to colour-blind readers. Every bar and line has its label next to it.
 
 mod bars;
 #[cfg(test)]
@@ -24,13 +24,13 @@ pub const INK: RGBColor = RGBColor(30, 30, 30);
 pub const FAINT: RGBColor = RGBColor(110, 110, 110);
 pub const GRID: RGBColor = RGBColor(215, 215, 215);
 
-/// Width of a picture of one column, pixels.
+/// Width of a picture of one column, in pixels.
 pub const WIDTH: i32 = 900;
-/// Where bars begin and end; labels stand to the left, figures to the right.
+/// Left and right ends of bars; labels are to the left, figures to the right.
 pub const LEFT: i32 = 215;
 pub const RIGHT: i32 = 770;
 
-/// How a text stands at its point.
+/// Alignment of a text at its point.
 #[derive(Clone, Copy)]
 pub enum At {
     Left,
@@ -54,7 +54,7 @@ pub enum Mark {
 }
 
 impl Mark {
-    /// The corners of a mark about as large as a disc of that radius; none of a disc.
+    /// Returns the corners of a mark about as large as a disc of that radius; none for a disc.
     fn corners(self, (x, y): (i32, i32), radius: i32) -> Vec<(i32, i32)> {
         let (r, high) = (radius, radius + 1);
         match self {
@@ -70,12 +70,12 @@ impl Mark {
 /// A sheet to draw on, in pixels from the upper left.
 pub struct Sheet<'a>(DrawingArea<SVGBackend<'a>, Shift>);
 
-/// Draws on a sheet of that height; the SVG.
+/// Draws on a sheet of that height; returns the SVG.
 pub fn sheet(height: i32, draw: impl FnOnce(&Sheet) -> Drawn) -> Result<String, Error> {
     wide_sheet([WIDTH, height], draw)
 }
 
-/// Draws on a sheet of that width and height; the SVG.
+/// Draws on a sheet of that width and height; returns the SVG.
 pub fn wide_sheet(size: [i32; 2], draw: impl FnOnce(&Sheet) -> Drawn) -> Result<String, Error> {
     let mut svg = String::new();
     let [width, height] = size.map(|side| side.max(1) as u32);
@@ -87,23 +87,23 @@ pub fn wide_sheet(size: [i32; 2], draw: impl FnOnce(&Sheet) -> Drawn) -> Result<
     Ok(svg)
 }
 
-/// Drawn, or why not.
+/// Success, or the reason of a failure.
 pub type Drawn = Result<(), String>;
 
 impl<'a> Sheet<'a> {
-    /// A part of it, with pixels from its own upper left.
+    /// Returns a part of the sheet, with pixels from its own upper left.
     pub fn part(&self, corner: (i32, i32), size: (i32, i32)) -> Sheet<'a> {
         Sheet(self.0.clone().shrink(corner, size))
     }
 
-    /// A text of `size` pixels, its middle at that height.
+    /// Draws a text of `size` pixels, centred at that height.
     pub fn text(&self, text: &str, (x, y): (i32, i32), size: i32, at: At, colour: RGBColor) -> Drawn {
         let h = match at {
             At::Left => HPos::Left,
             At::Middle => HPos::Center,
             At::Right => HPos::Right,
         };
-        // The backend makes fonts smaller by this.
+        // The backend reduces fonts by this factor.
         let font = ("sans-serif", f64::from(size) * 1.24).into_font();
         let style = font.color(&colour).pos(Pos::new(h, VPos::Center));
         self.0.draw_text(text, &style, (x, y)).map_err(|e| e.to_string())
@@ -119,7 +119,7 @@ impl<'a> Sheet<'a> {
         self.0.draw(&Rectangle::new(corners, colour.filled())).map_err(|e| e.to_string())
     }
 
-    /// A mark, filled or hollow.
+    /// Draws a mark, filled or hollow.
     pub fn mark(&self, mark: Mark, at: (i32, i32), radius: i32, colour: RGBColor, filled: bool) -> Drawn {
         let style = if filled { colour.filled() } else { WHITE.filled() };
         let mut corners = mark.corners(at, radius);
@@ -137,7 +137,7 @@ impl<'a> Sheet<'a> {
         inside.map_err(|e| e.to_string())
     }
 
-    /// A line of dashes.
+    /// Draws a dashed line.
     pub fn dashes(&self, points: Vec<(i32, i32)>, colour: RGBColor, width: u32) -> Drawn {
         let style = colour.stroke_width(width);
         self.0
@@ -149,7 +149,8 @@ impl<'a> Sheet<'a> {
         self.0.draw(&PathElement::new(points, colour.stroke_width(width))).map_err(|e| e.to_string())
     }
 
-    /// The picture's title, and lines of smaller print below it; where the picture goes on.
+    /// Draws the picture's title, and lines of smaller print below it. Returns the height of its
+    /// end.
     pub fn head(&self, title: &str, notes: &[(String, RGBColor)]) -> Result<i32, String> {
         self.bold(title, (20, 26), 18)?;
         let mut y = 50;
@@ -161,7 +162,7 @@ impl<'a> Sheet<'a> {
     }
 }
 
-/// Height that [`Sheet::head`] takes with that many notes.
+/// Returns the height that [`Sheet::head`] takes with that many notes.
 pub fn head_height(notes: usize) -> i32 {
     54 + 18 * notes as i32
 }

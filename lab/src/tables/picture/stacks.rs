@@ -7,9 +7,9 @@ use plotters::style::RGBColor;
 
 /// One bar: shares in percent, in the order of [`NAMES`], and the whole in milliseconds.
 pub struct Stack {
-    /// The scene; bars of one scene stand together.
+    /// The scene; bars of one scene are adjacent.
     pub panel: String,
-    /// What is timed.
+    /// Name of the timed work.
     pub label: String,
     /// Percent.
     pub shares: [f64; 4],
@@ -17,7 +17,7 @@ pub struct Stack {
     pub ms: f64,
 }
 
-/// The parts, and each one's colour and that of a text on it.
+/// Names of the parts, then the colour of each and of a text on it.
 const NAMES: [&str; 4] = ["refit", "traverse", "balance", "triangle tests"];
 const WHITE: RGBColor = RGBColor(255, 255, 255);
 const COLOURS: [(RGBColor, RGBColor); 4] = [
@@ -27,18 +27,18 @@ const COLOURS: [(RGBColor, RGBColor); 4] = [
     (RGBColor(240, 228, 66), INK),
 ];
 
-/// Height of a bar, of a bar with its gap, and of what a panel has besides.
+/// Height of a bar, of a bar with its gap, and of the rest of a panel.
 const BAR: i32 = 20;
 const ROW: i32 = 27;
 const PANEL: i32 = 62;
 
-/// Pixels that a letter takes at most, at size 12.
+/// Most pixels of a letter, at size 12.
 const LETTER: i32 = 7;
 
-/// The picture.
+/// Draws the picture.
 ///
 /// # Errors
-/// [`Error::Bug`] where it cannot be drawn.
+/// [`Error::Bug`] if it cannot be drawn.
 pub fn stacks(title: &str, device: &str, all: &[Stack]) -> Result<String, Error> {
     let panels: Vec<&[Stack]> = all.chunk_by(|a, b| a.panel == b.panel).collect();
     let height = |panel: &[Stack]| PANEL + ROW * panel.len() as i32;

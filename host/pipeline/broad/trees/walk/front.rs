@@ -12,45 +12,46 @@ use crate::query::FrontShape;
 use nearmiss_kernels::abi::{FrontArgs, FrontFlags, Pair, TraverseFlags, counter};
 use nearmiss_kernels::entry::{self, Kernels};
 
-/// Pairs of the front a triangle for which there is room at first: cloth at rest has 30, swept over a step 100.
+/// Initial capacity, in pairs of the front per triangle. Cloth at rest has 30, cloth swept over a
+/// step 100.
 const PAIRS_A_TRIANGLE: usize = 48;
-/// Positions without a front after one that did not pay even when it was new.
+/// Number of positions without a front, after a new front did not pay.
 const REST: u32 = 8;
 
-/// See [`crate::query::Traversal::Front`].
+/// The walk of [`crate::query::Traversal::Front`].
 pub struct Front {
     device: Device,
     shape: FrontShape,
     queue: Queue,
-    /// Where the last descent ended.
+    /// Pairs at which the last descent ended.
     front: List<Pair>,
-    /// Where this one ends.
+    /// Pairs at which this descent ends.
     ends: List<Pair>,
     state: State,
     /// Positions since the front was last pruned.
     age: u32,
-    /// Overlap tests of the last descent from the roots.
+    /// Number of overlap tests of the last descent from the roots.
     from_roots: u64,
-    /// Whether the last frame dropped it, or rested from it.
+    /// Whether the last frame dropped the front, or ran without it.
     dropped: bool,
 }
 
-/// What is known of the last frame.
+/// State left by the last frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum State {
-    /// Nothing: descend from the roots and list the ends.
+    /// No front: descend from the roots and list the ends.
     New,
-    /// A front of that many pairs; whether it was made by the last frame from the roots.
+    /// A front of `count` pairs; `fresh` if the last frame made it from the roots.
     Kept { count: u32, fresh: bool },
-    /// It does not pay: descend from the roots for that many frames more.
+    /// The front does not pay: descend from the roots for so many more frames.
     Resting(u32),
 }
 
 impl Front {
-    /// Takes the memory for fronts over trees of `triangles` triangles.
+    /// Allocates fronts over trees of `triangles` triangles.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new<V: Kernels>(device: &Device, shape: FrontShape, triangles: usize) -> Result<Self, Error> {
         let list = || Self::list(device, PAIRS_A_TRIANGLE * triangles);
         let queue = crate::query::QueueShape { balance: crate::query::Balance::View, ..shape.queue };
@@ -71,7 +72,7 @@ impl Front {
         List::new(device, "pairs of the front", counter::ENDS, capacity)
     }
 
-    /// Whether this frame prunes: volumes whose tests do not nest cannot.
+    /// Returns whether this frame prunes. Volumes whose tests do not nest cannot.
     fn prunes<V: Kernels>(&self) -> bool {
         V::NESTS && self.shape.prune_every > 0 && self.age + 1 >= self.shape.prune_every
     }
@@ -108,9 +109,9 @@ impl<R: Precision, V: Kernels> Walk<R, V> for Front {
 
     fn finish(&mut self, counters: &Counts) -> Result<(), Error> {
         Walk::<R, V>::finish(&mut self.queue, counters)?;
-        // A unit is a pair of siblings tested against a node.
+        // A unit is a test of a pair of siblings against a node.
         let tests = counters[counter::FRONT_TESTS] + 2 * counters[counter::STEPS];
-        // Lists are no longer than an index reaches.
+        // Lists are no longer than 32 bits can index.
         let count = counters[counter::ENDS] as u32;
         let pruned = self.prunes::<V>();
         let rested = matches!(self.state, State::Resting(_));
@@ -139,7 +140,7 @@ impl<R: Precision, V: Kernels> Walk<R, V> for Front {
         self.dropped = rested || had && !kept;
         if kept {
             std::mem::swap(&mut self.front, &mut self.ends);
-            // What this frame needed the next one will need as well: no frame runs again for that.
+            // The next frame will need as much as this one: so no frame reruns for that.
             if self.ends.capacity() < self.front.capacity() {
                 self.ends = Self::list(&self.device, self.front.capacity())?;
             }

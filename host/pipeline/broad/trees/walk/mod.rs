@@ -1,4 +1,5 @@
-//! Traverse: the ways from the trees to candidates. Each is a strategy with its own memory; all give one set.
+//! Traverse: the walks from the trees to candidates. Each walk is a strategy with its own memory;
+//! all give one set.
 
 mod front;
 mod nearest;
@@ -24,9 +25,9 @@ use per_leaf::PerLeaf;
 use queue::Queue;
 use steal::Steal;
 
-/// What a walk is given: the machine, the trees, and where candidates go.
+/// Inputs and outputs of a walk: the device, the trees, and the lists of candidates.
 pub struct WalkContext<'a, R: Precision, V> {
-    /// The machine.
+    /// The device.
     pub device: &'a Device,
     /// The trees and their volumes.
     pub forest: &'a Forest<V>,
@@ -34,25 +35,25 @@ pub struct WalkContext<'a, R: Precision, V> {
     pub frames: Positions<R>,
     /// Vertex indices of every triangle.
     pub faces: Span<[u32; 3]>,
-    /// What the kernels know of the bodies.
+    /// Records of the bodies for the kernels.
     pub records: Span<BodyRecord>,
     /// Out: candidate triangle pairs.
     pub pairs: Output<Pair>,
-    /// Out, with [`TraverseFlags::FRONT`]: pairs of nodes where the descent ended.
+    /// Out, with [`TraverseFlags::FRONT`]: pairs of nodes at which the descent ended.
     pub ends: Output<Pair>,
     /// The frame's counters.
     pub counters: Counters,
-    /// What every walk is told.
+    /// Options of the walk.
     pub flags: TraverseFlags,
 }
 
 impl<R: Precision, V: Kernels> WalkContext<'_, R, V> {
-    /// Which pairs are asked at all.
+    /// Returns the filters of the pairs.
     fn filters(&self) -> FilterArgs {
         self.forest.filters(self.records)
     }
 
-    /// What a walk by pairs of nodes is told, with queues of `local` units on chip.
+    /// Returns the arguments of a walk by pairs of nodes, with queues of `local` units on chip.
     fn pair_args(&self, local: u32) -> PairArgs<V> {
         PairArgs {
             nodes: self.forest.volumes.nodes.span(),
@@ -67,62 +68,64 @@ impl<R: Precision, V: Kernels> WalkContext<'_, R, V> {
     }
 }
 
-/// Blocks of a kernel by pairs of nodes that a machine works with best: a quarter of what its lanes allow. On an H200 that
-/// is 8 of 64 lanes a processor; 6 and 10 are slower for most volumes, 16 for all (measured, `benches/NOTES.md`).
+/// Returns the best number of blocks for a kernel by pairs of nodes: a quarter of the device's
+/// lanes. On an H200 that is 8 blocks of 64 lanes a processor. With 6 and 10 most volumes are
+/// slower, with 16 all are (measured, `benches/NOTES.md`).
 fn resident<E: Entry>(device: &Device) -> u32 {
     device.blocks_striding::<E>(u32::MAX as usize).div_ceil(4)
 }
 
-/// A way through the trees.
+/// A walk through the trees.
 pub trait Walk<R: Precision, V>: Send {
-    /// Launches it. All counters are zero before.
+    /// Launches the walk. All counters are zero before.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn launch(&mut self, given: &WalkContext<R, V>) -> Result<(), Error>;
 
-    /// Its own lists, which may turn out too short: then they grow and it is launched again.
+    /// Returns its own lists. One that turns out too short grows, and the walk is launched again.
     fn lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
         Vec::new()
     }
 
-    /// The frame is answered: what was learnt may be kept for the next one.
+    /// Ends an answered frame: results may be kept for the next one.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn finish(&mut self, _counters: &Counts) -> Result<(), Error> {
         Ok(())
     }
 
-    /// Whether the next launch does without the host: else why not.
+    /// Returns whether the next launch can run without the host, else the reason.
     ///
     /// # Errors
-    /// What it needs the host for.
+    /// The reason why it needs the host.
     fn without_host(&self) -> Result<(), &'static str> {
         Ok(())
     }
 
-    /// Whether the last frame, once finished, had no front though one was asked for, or dropped it.
+    /// Returns whether the last finished frame dropped its front, or had none though the query uses
+    /// one.
     fn front_dropped(&self) -> bool {
         false
     }
 
-    /// The trees were built anew: what was kept is worth nothing.
+    /// Discards kept results: the trees were rebuilt.
     fn invalidate(&mut self) {}
 
-    /// Milliseconds that the last launch spent on balancing; waits for it.
+    /// Returns the milliseconds that the last launch spent on balancing; waits for it.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     fn balance_ms(&self) -> Result<f64, Error> {
         Ok(0.0)
     }
 }
 
-/// The walk that a query asks for, with memory for trees of `triangles` triangles in all.
+/// Returns the walk of a query, with memory for trees of `triangles` triangles in all.
 ///
 /// # Errors
-/// Those of the device.
+/// Device errors.
 pub fn walk<R: Precision, V: Kernels>(
     device: &Device,
     query: &Query,

@@ -1,4 +1,5 @@
-//! Nearest first: a bound of the least distance from samples, then a walk a leaf into what is not farther.
+//! Nearest first: samples give a bound of the least distance, then a walk per leaf visits the nodes
+//! that are no farther.
 
 use super::{Walk, WalkContext};
 use crate::error::Error;
@@ -7,13 +8,15 @@ use crate::pipeline::precision::Precision;
 use nearmiss_kernels::abi::{Counter, NearestArgs, Output, TraverseArgs, counter};
 use nearmiss_kernels::entry::{self, Kernels};
 
-/// Samples of each round, pairs that each measures at most, and which counter takes the bound: some that go down to one leaf, then
-/// many, of which most end at the root. More find bounds that are hardly better (`benches/NOTES.md`).
+/// The rounds of samples: their number, the most pairs that each measures, and the counter of the
+/// bound. The first ones go down to one leaf; most of the later ones end at the root. More samples
+/// hardly improve the bound (`benches/NOTES.md`).
 const ROUNDS: [(u32, u32, Counter); 2] = [(256, 1, counter::SAMPLED), (4096, 2, counter::SAMPLED_AGAIN)];
-/// Pairs of siblings that a sample looks at: several ways down any tree, so that none is long. What ends is a bound that is less good.
+/// Most pairs of siblings that a sample visits: several descents of any tree, so that no sample is
+/// long. A sample that stops early only gives a weaker bound.
 const STEPS: u32 = 128;
 
-/// See [`crate::query::Traversal::NearestFirst`].
+/// The walk of [`crate::query::Traversal::NearestFirst`].
 pub struct NearestFirst;
 
 impl<R: Precision, V: Kernels> Walk<R, V> for NearestFirst {

@@ -1,4 +1,4 @@
-//! A walk a leaf, then rounds of what longer walks left over.
+//! A walk per leaf, then rounds over the units that longer walks left.
 
 use super::{Walk, WalkContext};
 use crate::device::{Buffer, Device};
@@ -9,19 +9,19 @@ use crate::pipeline::precision::Precision;
 use nearmiss_kernels::abi::{Output, ROUNDS, TraverseArgs, Unit, counter};
 use nearmiss_kernels::entry::{self, Kernels};
 
-/// See [`crate::query::Traversal::PerLeaf`].
+/// The walk of [`crate::query::Traversal::PerLeaf`].
 pub struct PerLeaf {
     device: Device,
     budget: Option<u32>,
-    /// What a round reads and what it leaves; of walks with a budget alone.
+    /// Units that a round reads, and those that it leaves; only for walks with a budget.
     units: Option<[Buffer<Unit>; 2]>,
 }
 
 impl PerLeaf {
-    /// Takes the memory for walks of `triangles` leaves.
+    /// Allocates walks of `triangles` leaves.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new(device: &Device, budget: Option<u32>, triangles: usize) -> Result<Self, Error> {
         let units = || Ok::<_, Error>([device.buffer(4 * triangles)?, device.buffer(4 * triangles)?]);
         Ok(PerLeaf { device: device.clone(), budget, units: budget.map(|_| units()).transpose()? })
@@ -31,7 +31,7 @@ impl PerLeaf {
 impl<R: Precision, V: Kernels> Walk<R, V> for PerLeaf {
     fn launch(&mut self, given: &WalkContext<R, V>) -> Result<(), Error> {
         let (forest, device) = (given.forest, given.device);
-        // What a round leaves, and what counts that.
+        // The units that a round leaves, and their counter.
         let spilled = |units: &[Buffer<Unit>; 2], round: u32| {
             let round = round as usize;
             given.counters.output(units[round % 2].span(), counter::SPILLED[round])
@@ -60,7 +60,7 @@ impl<R: Precision, V: Kernels> Walk<R, V> for PerLeaf {
         for round in 0..ROUNDS {
             args.units = args.spilled;
             if round + 1 == ROUNDS {
-                // No walk is that long: nothing is left.
+                // No walk is that long: no unit is left.
                 (args.budget, args.spilled) = (u32::MAX, Output::EMPTY);
             } else {
                 args.spilled = spilled(units, round + 1);
@@ -70,7 +70,8 @@ impl<R: Precision, V: Kernels> Walk<R, V> for PerLeaf {
         Ok(())
     }
 
-    /// Units without room were walked on by their lanes, which is right and slow: the next frame has room for them.
+    /// Lanes finished the units that had no room, which is correct and slow: the next frame has
+    /// room for them.
     fn finish(&mut self, counters: &Counts) -> Result<(), Error> {
         let Some(units) = &mut self.units else { return Ok(()) };
         let most = counter::SPILLED.iter().map(|&round| counters[round]).max().unwrap_or(0) as usize;

@@ -1,4 +1,4 @@
-//! Rounds of work queues, until nothing is left.
+//! Rounds of work queues, until no unit is left.
 
 use super::segments::Segments;
 use super::{Walk, WalkContext, resident};
@@ -12,41 +12,44 @@ use crate::query::{Balance, QueueShape};
 use nearmiss_kernels::abi::{BalanceArgs, Counter, Output, Pair, QueueArgs, QueueFlags, counter};
 use nearmiss_kernels::entry::{self, Kernels};
 
-/// Rounds that are launched before the host looks whether anything is left, as long as it does not know. Even: the two
-/// copies of the list swap places each round.
+/// Rounds that are launched between two reads by the host, while their number is unknown. Even: the
+/// two copies of the list swap places each round.
 const BATCH: u32 = 8;
-/// Rounds that can be launched without the host.
+/// Most rounds that can be launched without the host.
 const MOST_ROUNDS: u32 = 128;
-/// Rounds that are launched beyond those that the last frames needed; one without work costs a launch.
+/// Rounds launched in addition to those that the last frames needed. A round without work costs a
+/// launch.
 const MORE_ROUNDS: u32 = 2;
-/// Units that the first block makes of the roots before the others help.
+/// Units that the first block makes of the roots before other blocks help.
 const FIRST_UNITS: u32 = 64;
 
-/// See [`crate::query::Traversal::Queue`].
+/// The walk of [`crate::query::Traversal::Queue`].
 pub struct Queue {
     shape: QueueShape,
     cores: u32,
     units: Segments<2>,
-    /// Copy: units of each queue, for each copy. View: units of each round; the second is not used.
+    /// Copy: number of units of each queue, for each copy. View: number of units of each round; the
+    /// second is unused.
     counts: [Buffer<u64>; 2],
-    /// Queues that ran dry, of each round.
+    /// Number of queues that ran dry in each round.
     idle: Buffer<u64>,
-    /// Copy: where each queue's units begin among all.
+    /// Copy: start of each queue's units among all.
     starts: Buffer<u64>,
     plan: Plan,
     balances: Vec<[Event; 2]>,
 }
 
-/// How many rounds to launch, from the roots and from a seed; `None`: look.
+/// Number of rounds to launch, from the roots and from a seed; `None`: read the counters between
+/// rounds.
 #[derive(Default)]
 struct Plan {
     rounds: [Option<u32>; 2],
-    /// Whether the last launch was from a seed.
+    /// Whether the last launch began with a seed.
     seeded: bool,
 }
 
 impl Plan {
-    /// The rounds of the last kind of launch.
+    /// Returns the number of rounds for the last kind of launch.
     fn of_last(&mut self) -> &mut Option<u32> {
         &mut self.rounds[usize::from(self.seeded)]
     }
@@ -69,10 +72,10 @@ impl GrowableOutput for Plan {
 }
 
 impl Queue {
-    /// Takes the memory.
+    /// Allocates the queues.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new<V: Kernels>(device: &Device, shape: QueueShape) -> Result<Self, Error> {
         let cores = shape.cores.unwrap_or_else(|| resident::<entry::traverse_queue<V>>(device));
         let (segments, counts, rounds) = match shape.balance {
@@ -103,7 +106,7 @@ impl Queue {
         let lanes = given.device.lanes::<entry::traverse_queue<V>>();
         let start = flags.has(QueueFlags::START);
         let copy = balance == Balance::Copy;
-        // One list for all: the first block alone, until there is something to share.
+        // One list for all: only the first block runs, until there are units to share.
         let alone = start && !copy;
         let args = QueueArgs {
             to: given.pair_args(local),
@@ -129,20 +132,20 @@ impl Queue {
         launch::blocks::<entry::traverse_queue<V>>(given.device, if alone { 1 } else { self.cores }, &args)
     }
 
-    /// Whether rounds from the roots, or from a seed, do without the host. Copies need it between rounds; so do views before a frame
-    /// has told how many rounds there are.
+    /// Returns whether rounds from the roots, or from a seed, can run without the host. Copies need
+    /// it between rounds. Views need it until a frame has found the number of rounds.
     ///
     /// # Errors
-    /// Why not.
+    /// The reason why not.
     pub fn is_planned(&self, seeded: bool) -> Result<(), &'static str> {
         match (self.shape.balance, self.plan.rounds[usize::from(seeded)]) {
-            (Balance::Copy, _) => Err("queues evened by copies ask the host between rounds"),
-            (Balance::View, None) => Err("the queues' rounds are too many to be planned"),
+            (Balance::Copy, _) => Err("traversal `queue` with balance `copy` needs the host between rounds"),
+            (Balance::View, None) => Err("traversal `queue` needs too many rounds to plan them ahead"),
             (Balance::View, Some(_)) => Ok(()),
         }
     }
 
-    /// Rounds with a balance between them, until the host sees that nothing is left.
+    /// Runs rounds with a balance between them, until the host reads that no unit is left.
     fn by_copy<R: Precision, V: Kernels>(&mut self, given: &WalkContext<R, V>) -> Result<(), Error> {
         let (mut from, mut flags) = (0, QueueFlags::START);
         loop {
@@ -152,7 +155,8 @@ impl Queue {
             let to = 1 - from;
             let counts = self.counts[to].read(self.cores as usize)?;
             let most = counts.iter().max().copied().unwrap_or(0);
-            // Nothing left; or a segment was too short, as the counter tells: it grows, and all begins anew.
+            // No unit is left. Or a segment was too short, as its counter shows: it grows, and the
+            // walk restarts.
             if most == 0 || most > self.units.len() as u64 {
                 return Ok(());
             }
@@ -180,8 +184,9 @@ impl Queue {
         }
     }
 
-    /// Rounds that share one list: as many as are planned, or until the host sees that nothing is left. They begin with
-    /// the roots, or with the units that `seed` writes to the list and counts.
+    /// Runs rounds that share one list: as many as planned, or until the host reads that no unit is
+    /// left. They begin with the roots, or with the units that `seed` writes to the list and
+    /// counts.
     fn by_view<R: Precision, V: Kernels>(
         &mut self,
         given: &WalkContext<R, V>,
@@ -219,10 +224,10 @@ impl Queue {
         }
     }
 
-    /// Rounds that share one list and begin with what `seed` writes.
+    /// Runs rounds that share one list and begin with the units that `seed` writes.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn launch_from<R: Precision, V: Kernels>(
         &mut self,
         given: &WalkContext<R, V>,
@@ -249,7 +254,7 @@ impl<R: Precision, V: Kernels> Walk<R, V> for Queue {
     }
 
     fn finish(&mut self, counters: &Counts) -> Result<(), Error> {
-        // A machine's rounds vary from run to run: a plan shrinks by one a frame at most.
+        // The number of rounds varies from run to run: a plan shrinks by at most one a frame.
         let rounds = counters[counter::QUEUE_ROUNDS] + MORE_ROUNDS as u64;
         let rounds = rounds.max(self.plan.of_last().unwrap_or(0).saturating_sub(1) as u64);
         *self.plan.of_last() = (rounds <= MOST_ROUNDS as u64).then_some(rounds as u32);
@@ -261,7 +266,7 @@ impl<R: Precision, V: Kernels> Walk<R, V> for Queue {
     }
 
     fn balance_ms(&self) -> Result<f64, Error> {
-        // From 0.0: the sum of nothing would be -0.0.
+        // From 0.0: the sum of no values would be -0.0.
         self.balances.iter().try_fold(0.0, |sum, [from, to]| Ok(sum + from.to(to)?))
     }
 }

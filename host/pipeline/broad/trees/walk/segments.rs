@@ -14,7 +14,7 @@ pub struct Segments<const N: usize> {
 }
 
 impl<const N: usize> Segments<N> {
-    /// `count` segments of `len` units.
+    /// Allocates `count` segments of `len` units.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -28,12 +28,12 @@ impl<const N: usize> Segments<N> {
         Ok(Segments { count, len: len as u32, copies })
     }
 
-    /// Units of a segment.
+    /// Returns the units of a segment.
     pub fn len(&self) -> u32 {
         self.len
     }
 
-    /// A copy.
+    /// Returns a copy.
     pub fn span(&self, copy: usize) -> Span<Pair> {
         self.copies[copy % N].span()
     }
@@ -46,7 +46,7 @@ impl<const N: usize> GrowableOutput for Segments<N> {
     fn room(&self) -> u64 {
         self.len.into()
     }
-    /// The demand is that of a run that lost units, a lower bound: twice the length at least.
+    /// The demand is that of a run that lost units, so a lower bound: the length at least doubles.
     fn grow(&mut self, device: &Device, counters: &Counts) -> Result<bool, Error> {
         if !self.has_overflowed(counters) {
             return Ok(false);
@@ -56,7 +56,7 @@ impl<const N: usize> GrowableOutput for Segments<N> {
             return Err(too_long(self.count as u64 * demand));
         }
         let len = (demand + demand / 8).max(2 * self.len as u64).min(LONGEST / self.count as u64);
-        // The old units are not needed: the traversal begins anew.
+        // The old units are not needed: the traversal restarts.
         for copy in &mut self.copies {
             *copy = device.buffer(0)?;
         }

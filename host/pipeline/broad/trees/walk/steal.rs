@@ -1,4 +1,4 @@
-//! Work queues that help each other out, in one launch.
+//! Work queues that share units through a pool, in one launch.
 
 use super::segments::Segments;
 use super::{Walk, WalkContext, resident};
@@ -11,11 +11,11 @@ use crate::query::StealShape;
 use nearmiss_kernels::abi::{Pair, StealArgs, StealFlags, control, pool};
 use nearmiss_kernels::entry::{self, Kernels};
 
-/// Places of the pool a queue, where the query does not say: queues run dry some times each, whatever the size of the
-/// trees, since what they are given are large subtrees. 16 KB a queue.
+/// Default number of pool places per queue, 16 KB a queue. Queues run dry only a few times each,
+/// for any size of the trees, since they receive large subtrees.
 const PLACES: u32 = 32;
 
-/// See [`crate::query::Traversal::Steal`].
+/// The walk of [`crate::query::Traversal::Steal`].
 pub struct Steal {
     shape: StealShape,
     cores: u32,
@@ -23,15 +23,15 @@ pub struct Steal {
     pool: Buffer<u64>,
     chunks: Buffer<Pair>,
     control: Buffer<u64>,
-    /// How many so far: what earlier ones left in the pool is known by it.
+    /// Number of launches so far: it marks pool entries of earlier launches as stale.
     launches: u64,
 }
 
 impl Steal {
-    /// Takes the memory.
+    /// Allocates the queues and the pool.
     ///
     /// # Errors
-    /// Those of the device.
+    /// Device errors.
     pub fn new<V: Kernels>(device: &Device, shape: StealShape) -> Result<Self, Error> {
         let cores = shape.cores.unwrap_or_else(|| resident::<entry::traverse_steal<V>>(device));
         let places = shape.pool.unwrap_or((PLACES * cores).min(control::MOST_PLACES)) as usize;
@@ -73,8 +73,8 @@ impl<R: Precision, V: Kernels> Walk<R, V> for Steal {
         vec![&mut self.units]
     }
 
-    /// A launch that is recorded once and run twice would take for its own what the first run left in the pool.
+    /// A recorded launch that runs twice would take the first run's pool entries for its own.
     fn without_host(&self) -> Result<(), &'static str> {
-        Err("queues that help each other out number their launches on the host")
+        Err("traversal `steal` numbers its launches on the host")
     }
 }
