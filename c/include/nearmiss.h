@@ -654,7 +654,7 @@ typedef struct {
     // Not 0 where positions or poses of the caller cannot be computed with: then there is no answer.
     uint64_t invalid;
     // Triangle pairs that share a point at the start of the step; all bits set if the start is not
-    // checked.
+    // checked. Part of the answer: usable only if `short_of_room` and `invalid` are 0.
     uint64_t crossing;
 } NearmissFrameStatus;
 

@@ -41,7 +41,8 @@ pub struct DeviceAnswer {
     pub lists: Vec<DeviceList>,
     /// Whether entries are in canonical order: on a GPU, if 64-bit keys can distinguish them.
     pub is_ordered: bool,
-    /// Address of the [`FrameStatus`]: the number of entries, and whether the answer is complete.
+    /// Address of the [`FrameStatus`]: the number of entries, and whether the answer is complete. Its
+    /// counts, those of crossings included, are usable only if `short` and `invalid` are 0.
     pub status: u64,
     /// Address of an earliest query's time: an f64, all bits set if nothing meets. The next 8 bytes
     /// are twice those bits, plus 1 if only an undecided pair has that time.

@@ -33,7 +33,7 @@ fn the_catalogue_agrees_with_the_oracle() {
         let first = first_contact_until(&q.case, q.end);
         match (q.expect, first) {
             (Expect::Apart | Expect::Near, None) => {}
-            (Expect::CollisionFilter(t) | Expect::Sure(t), Some(toi)) => {
+            (Expect::Meets(t) | Expect::Sure(t), Some(toi)) => {
                 let late = toi.lateness(t);
                 assert!(late.abs() <= q.blur.max(1e-15), "{} {}: {t} is {late:e} late", q.id, q.what);
             }

@@ -7,6 +7,7 @@ use crate::error::Error;
 use crate::pipeline::counts::Counts;
 use crate::pipeline::list::GrowableOutput;
 use crate::pipeline::precision::Precision;
+use crate::pipeline::purpose;
 use nearmiss_kernels::abi::counter;
 
 impl<R: Precision> QueryMemory<R> {
@@ -19,6 +20,25 @@ impl<R: Precision> QueryMemory<R> {
             || steps
                 .any(|at| self.narrow.lists(at, features).iter().any(|list| list.has_overflowed(counters)))
             || self.narrow.ordered().is_some_and(|list| list.has_overflowed(counters))
+    }
+
+    /// Grows every list that a submission found too short, by the demand of its schedule: the frame
+    /// that follows may have another one, and need less. Lists that memory has no room for stay
+    /// short, and so does everything if the answer is refused: then that frame returns the error.
+    pub(super) fn grow_all(&mut self, scene: &mut SceneMemory<R>, counters: &Counts) {
+        let is_refused = self.refuse(scene, Step::Traverse, counters).is_err()
+            || self.demand.counted(counters, &scene.device).is_err();
+        if is_refused {
+            return;
+        }
+        let device = scene.device.of(purpose::WALK);
+        let grow = |list: &mut dyn GrowableOutput| drop(list.grow(&device, counters));
+        scene.broads[self.broad].phase.lists().into_iter().for_each(grow);
+        grow(&mut scene.pairs);
+        for at in self.narrow_steps_at() {
+            self.narrow.lists(at, &mut scene.features).into_iter().for_each(grow);
+        }
+        self.narrow.ordered().into_iter().for_each(grow);
     }
 
     /// Refuses a step's counted rows, before its lists grow.

@@ -8,6 +8,7 @@ use crate::contacts::{DeviceAnswer, DeviceList};
 use crate::device::{Buffer, Replay};
 use crate::error::Error;
 use crate::pipeline::broad::growth;
+use crate::pipeline::counts::Counts;
 use crate::pipeline::list::GrowableOutput;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::Found;
@@ -38,13 +39,15 @@ pub struct Submitted {
 
 /// A pipeline that takes submissions.
 pub trait Submits {
-    /// Allocates a submission of queries that have each run a whole frame. From then on the lists
-    /// do not grow until the next [`Pipeline::frame`](super::Pipeline::frame).
+    /// Allocates a submission of queries that have each run a whole frame, and submits them once. From
+    /// then on the lists do not grow until the next [`Pipeline::frame`](super::Pipeline::frame).
+    /// Returns whether that submission had room for all. If not, its lists have grown, it is not
+    /// prepared, and each query needs another frame.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] if a walk needs the host, or if the last placing read host
-    /// memory; device errors.
-    fn prepare(&mut self, queries: &[usize]) -> Result<(), Error>;
+    /// memory; device errors. It is not prepared then.
+    fn prepare(&mut self, queries: &[usize]) -> Result<bool, Error>;
     /// Returns whether it is prepared.
     fn is_prepared(&self) -> bool;
     /// Submits the queries: positions are read again from the same addresses.
@@ -52,8 +55,8 @@ pub trait Submits {
     /// # Errors
     /// [`Error::InvalidArgument`] if it is not prepared; device errors.
     fn submit(&mut self) -> Result<(), Error>;
-    /// Returns the answer of a query in the last submission. `None` if a list had too little room,
-    /// or it is not prepared. Waits.
+    /// Returns the answer of a query in the last submission. `None` if it is not prepared, or if a
+    /// list had too little room: that list has grown, and it is no longer prepared. Waits.
     ///
     /// # Errors
     /// Device errors.
@@ -73,7 +76,7 @@ impl<R: Precision> Submits for TypedPipeline<R> {
         self.scene.vertices.poses()
     }
 
-    fn prepare(&mut self, queries: &[usize]) -> Result<(), Error> {
+    fn prepare(&mut self, queries: &[usize]) -> Result<bool, Error> {
         let refused = |what: &str, advice: &str| {
             Err(Error::InvalidArgument { what: what.to_owned(), advice: advice.to_owned() })
         };
@@ -97,8 +100,16 @@ impl<R: Precision> Submits for TypedPipeline<R> {
         let mut unseen = device.buffer(seen::COUNT as usize)?;
         unseen.clear()?;
         self.submission = Some(Submission { queries: submitted, replay: Replay::default(), unseen });
-        // Once as it will be: the driver loads a kernel at its first launch.
-        self.submit()
+        // Once as it will be: the driver loads a kernel at its first launch. Its schedule may need
+        // more room than that of the frames before.
+        let whole = self.submit().and_then(|()| {
+            let counts = queries.iter().map(|&query| self.whole(query));
+            counts.collect::<Result<Vec<_>, _>>().map(|counts| counts.iter().all(Option::is_some))
+        });
+        if !matches!(whole, Ok(true)) {
+            self.submission = None;
+        }
+        whole
     }
 
     fn is_prepared(&self) -> bool {
@@ -124,15 +135,14 @@ impl<R: Precision> Submits for TypedPipeline<R> {
         if self.submitted(query).is_none() {
             return Ok(None);
         }
-        let (own, scene) = (&mut self.queries[query], &mut self.scene);
-        own.read_ahead(scene)?;
-        let counters = own.counters.read()?;
-        if own.has_overflowed(scene, &counters) {
-            own.settled = false;
+        self.queries[query].read_ahead(&self.scene)?;
+        let Some(counters) = self.whole(query)? else {
+            self.submission = None;
             return Ok(None);
-        }
+        };
+        let own = &mut self.queries[query];
         own.last.clone_from(&counters);
-        own.gather(scene, counters, 0).map(|found| Some((found, Stages::default())))
+        own.gather(&self.scene, counters, 0).map(|found| Some((found, Stages::default())))
     }
 
     fn answer(&self, query: usize) -> Option<DeviceAnswer> {
@@ -155,6 +165,19 @@ impl<R: Precision> Submits for TypedPipeline<R> {
 impl<R: Precision> TypedPipeline<R> {
     fn submitted(&self, query: usize) -> Option<&Submitted> {
         self.submission.iter().flat_map(|submission| &submission.queries).find(|own| own.query == query)
+    }
+
+    /// Returns the counters of a submitted query, if every list had room; otherwise the lists have
+    /// grown. Waits.
+    fn whole(&mut self, query: usize) -> Result<Option<Counts>, Error> {
+        let (own, scene) = (&mut self.queries[query], &mut self.scene);
+        let counters = own.counters.read()?;
+        if !own.has_overflowed(scene, &counters) {
+            return Ok(Some(counters));
+        }
+        own.settled = false;
+        own.grow_all(scene, &counters);
+        Ok(None)
     }
 
     /// Launches the queries, after the placing, and the status of each.
@@ -180,7 +203,7 @@ impl<R: Precision> TypedPipeline<R> {
 
 impl<R: Precision> QueryMemory<R> {
     /// Returns the room of every list that a frame fills.
-    fn rooms(&mut self, scene: &mut SceneMemory<R>) -> Vec<Room> {
+    pub(super) fn rooms(&mut self, scene: &mut SceneMemory<R>) -> Vec<Room> {
         let room =
             |list: &&mut dyn GrowableOutput| Room { entries: list.room(), counter: list.counter(), pad: 0 };
         let mut rooms: Vec<Room> = scene.broads[self.broad].phase.lists().iter().map(room).collect();

@@ -6,8 +6,8 @@ use crate::pipeline::Layout;
 use crate::samples;
 use nearmiss_kernels::abi::{Room, counter};
 
-/// Returns a prepared pipeline over a soup, whose list of pairs has too little room for a frame.
-fn prepared(device: &Device) -> TypedPipeline<f32> {
+/// Returns a pipeline over a soup that has answered a frame, and its query.
+fn answered(device: &Device) -> (TypedPipeline<f32>, usize) {
     let bodies = [samples::soup(300, 5, false)];
     let layout = Arc::new(Layout::new(&bodies, Query::discrete().kind()));
     let query = Query::discrete();
@@ -15,9 +15,48 @@ fn prepared(device: &Device) -> TypedPipeline<f32> {
     pipeline.place(&bodies, &[]).expect("nothing to place");
     pipeline.ready(at, &bodies).expect("ready");
     pipeline.frame(at).expect("a frame");
-    pipeline.scene.pairs = List::new(device, "candidate triangle pairs", counter::PAIRS, 3).expect("memory");
-    pipeline.prepare(&[at]).expect("prepared");
+    (pipeline, at)
+}
+
+/// A list of pairs that has too little room for a frame.
+fn short(device: &Device) -> List<Pair> {
+    List::new(device, "candidate triangle pairs", counter::PAIRS, 3).expect("memory")
+}
+
+/// The same, prepared; then its list of pairs is cut to too little room, and the status is told so.
+fn prepared(device: &Device) -> TypedPipeline<f32> {
+    let (mut pipeline, at) = answered(device);
+    assert!(pipeline.prepare(&[at]).expect("prepared"));
+    pipeline.scene.pairs = short(device);
+    let rooms = device.upload(&pipeline.queries[at].rooms(&mut pipeline.scene)).expect("memory");
+    pipeline.submission.as_mut().expect("prepared").queries[0].rooms = rooms;
     pipeline
+}
+
+/// A first submission without room, as on a schedule that needs more than that of the frame
+/// before: lists grow by its demand, and nothing is prepared until a frame has followed.
+#[test]
+fn a_preparation_whose_submission_is_short_is_none() {
+    let device = engine();
+    let (mut pipeline, at) = answered(&device);
+    let demand = pipeline.scene.pairs.demand(&pipeline.queries[at].last);
+    pipeline.scene.pairs = short(&device);
+    assert!(!pipeline.prepare(&[at]).expect("no error"));
+    assert!(!pipeline.is_prepared() && pipeline.submit().is_err());
+    assert!(pipeline.scene.pairs.capacity() as u64 >= demand);
+    pipeline.frame(at).expect("a frame");
+    assert!(pipeline.prepare(&[at]).expect("prepared") && pipeline.is_prepared());
+    assert_eq!(reported(&mut pipeline), (0, false));
+}
+
+/// A list that a submission found too short has grown when `collect` says so.
+#[test]
+fn a_short_submission_grows_its_lists_and_ends_the_preparation() {
+    let device = engine();
+    let mut pipeline = prepared(&device);
+    let demand = pipeline.scene.pairs.demand(&pipeline.queries[0].last);
+    assert_eq!(reported(&mut pipeline), (1, true));
+    assert!(pipeline.scene.pairs.capacity() as u64 >= demand && !pipeline.is_prepared());
 }
 
 fn engine() -> Device {

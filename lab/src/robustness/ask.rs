@@ -35,7 +35,7 @@ pub(super) fn verdict(met: Option<Outcome>, end: f64) -> Verdict {
 /// Returns whether a query of a whole step also answers the case: a first contact before an end is
 /// also first without it.
 fn is_public(q: &Question) -> bool {
-    q.end == 1.0 || matches!(q.expect, Expect::CollisionFilter(_) | Expect::Sure(_))
+    q.end == 1.0 || matches!(q.expect, Expect::Meets(_) | Expect::Sure(_))
 }
 
 /// Returns answers to cases, each with its own tolerance and separation; `None` if the case has no
@@ -183,7 +183,7 @@ pub fn ask_turned_questions(device: &Device, questions: &[Question]) -> Result<R
                     // In another order, a certified answer may become uncertified.
                     false => match turned.expect {
                         Expect::Sure(t) => {
-                            Question { expect: Expect::CollisionFilter(t), ..*turned }.judge(&is, narrow)
+                            Question { expect: Expect::Meets(t), ..*turned }.judge(&is, narrow)
                         }
                         _ => turned.judge(&is, narrow),
                     },
@@ -203,7 +203,7 @@ pub fn ask_turned_questions(device: &Device, questions: &[Question]) -> Result<R
         let said = answers(device, &backwards, solver, Options::default())?;
         for (q, is) in whole.iter().zip(said).filter_map(|(q, is)| Some((q, is?))) {
             let fault = match q.expect {
-                Expect::CollisionFilter(_) | Expect::Sure(_) => is.is_separated().then_some(Fault::Missed),
+                Expect::Meets(_) | Expect::Sure(_) => is.is_separated().then_some(Fault::Missed),
                 Expect::Apart | Expect::Near => is.is_contact().then_some(Fault::FalseCertificate),
             };
             report.note(fault, || format!("{} {}, backwards: got {is:?}, by {solver:?}", q.id, q.what));

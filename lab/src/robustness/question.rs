@@ -12,7 +12,7 @@ pub enum Expect {
     Near,
     /// The features first meet at this time. The answer must be neither separated nor late, and
     /// early by at most [`Question::early`].
-    CollisionFilter(f64),
+    Meets(f64),
     /// The same, and a solver in f64 must be certain of it.
     Sure(f64),
 }
@@ -94,7 +94,7 @@ impl Question {
             Expect::Apart | Expect::Near if said.is_contact() => Some(Fault::FalseCertificate),
             Expect::Apart => unexpected(!said.is_separated() || said.boxes > MOST_BOXES),
             Expect::Near => None,
-            Expect::CollisionFilter(t) | Expect::Sure(t) => {
+            Expect::Meets(t) | Expect::Sure(t) => {
                 let unsure = matches!(self.expect, Expect::Sure(_)) && !narrow && !said.is_contact();
                 let early = said.toi < t - self.early || said.exhausted();
                 if said.is_separated() {
@@ -125,7 +125,7 @@ mod tests {
         assert_eq!(judged(Expect::Sure(0.5), contact(0.4999, 0.5)), None);
         assert_eq!(judged(Expect::Sure(0.5), unsure(0.4999)), Some(Fault::Unexpected));
         assert_eq!(of(Expect::Sure(0.5)).judge(&unsure(0.4999), true), None);
-        for expect in [Expect::Sure(0.5), Expect::CollisionFilter(0.5)] {
+        for expect in [Expect::Sure(0.5), Expect::Meets(0.5)] {
             assert_eq!(judged(expect, apart), Some(Fault::Missed));
             assert_eq!(judged(expect, contact(0.51, 0.6)), Some(Fault::Late));
             assert_eq!(judged(expect, contact(0.4999, 0.49995)), Some(Fault::FalseCertificate));

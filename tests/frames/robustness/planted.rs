@@ -17,8 +17,8 @@ fn names(report: &Report, id: &str) -> bool {
 fn a_wrong_expectation_is_named() {
     for (id, wrong) in [
         ("X15", Expect::Apart),
-        ("X16", Expect::CollisionFilter(0.5)),
-        ("X27", Expect::CollisionFilter(0.25)),
+        ("X16", Expect::Meets(0.5)),
+        ("X27", Expect::Meets(0.25)),
         ("X28", Expect::Sure(0.25)),
         ("ti-head-filter", Expect::Apart),
     ] {

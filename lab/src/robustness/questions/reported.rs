@@ -174,7 +174,7 @@ pub fn reported_motions() -> Vec<Question> {
         .map(|&(name, face, t0, t1, end, truth)| {
             let (what, id) = name.rsplit_once(": ").unwrap_or((name, name));
             let features = if face { Features::VertexFace } else { Features::EdgeEdge };
-            let expect = truth.map_or(Expect::Near, Expect::CollisionFilter);
+            let expect = truth.map_or(Expect::Near, Expect::Meets);
             // Decimals of the expected time are rounded.
             let (blur, tolerance, early) = (1e-11, 1e-9, 1e-4);
             let question = Question::new((id, what), features, [t0, t1], expect);

@@ -20,6 +20,9 @@ const MOST_ROUNDS: u32 = 128;
 /// Rounds launched in addition to those that the last frames needed. A round without work costs a
 /// launch.
 const MORE_ROUNDS: u32 = 2;
+/// Limit of idle blocks that no machine reaches: blocks of such a round work off all units that
+/// have room on chip.
+const NEVER_IDLE: u32 = u32::MAX;
 /// Units that the first block makes of the roots before other blocks help.
 const FIRST_UNITS: u32 = 64;
 
@@ -39,11 +42,21 @@ pub struct Queue {
     balances: Vec<[Event; 2]>,
 }
 
+/// A round of a launch.
+struct Round {
+    round: u32,
+    flags: QueueFlags,
+    /// Blocks leave when more than so many have run dry.
+    idle_limit: u32,
+}
+
 /// Number of rounds to launch, from the roots and from a seed; `None`: read the counters between
 /// rounds.
 #[derive(Default)]
 struct Plan {
     rounds: [Option<u32>; 2],
+    /// Least rounds of the next plan, because the last one was too short.
+    least: [u32; 2],
     /// Whether the last launch began with a seed.
     seeded: bool,
 }
@@ -52,6 +65,15 @@ impl Plan {
     /// Returns the number of rounds for the last kind of launch.
     fn of_last(&mut self) -> &mut Option<u32> {
         &mut self.rounds[usize::from(self.seeded)]
+    }
+
+    /// Plans the next launch of the last kind, after one with so many rounds that had work. A
+    /// machine's rounds vary with the schedule: a plan shrinks by one a frame at most.
+    fn learn(&mut self, worked: u64) {
+        let least = std::mem::take(&mut self.least[usize::from(self.seeded)]);
+        let before = self.of_last().unwrap_or(0).saturating_sub(1);
+        let rounds = (worked + u64::from(MORE_ROUNDS)).max(before.max(least).into());
+        *self.of_last() = (rounds <= MOST_ROUNDS.into()).then_some(rounds as u32);
     }
 }
 
@@ -62,10 +84,12 @@ impl GrowableOutput for Plan {
     fn room(&self) -> u64 {
         0
     }
+    /// The next launch looks when it is done. The plan after it is twice as long as this one, since
+    /// that launch may have a schedule that needs fewer rounds.
     fn grow(&mut self, _: &Device, counters: &Counts) -> Result<bool, Error> {
         let short = self.has_overflowed(counters);
-        if short {
-            *self.of_last() = None;
+        if let (true, Some(rounds)) = (short, self.of_last().take()) {
+            self.least[usize::from(self.seeded)] = (2 * rounds).min(MOST_ROUNDS);
         }
         Ok(short)
     }
@@ -95,14 +119,21 @@ impl Queue {
         })
     }
 
+    /// How many blocks may have run dry before the others leave. At most the number of cores, since
+    /// the share is at most 1.
+    fn idle_limit(&self) -> u32 {
+        let (numerator, denominator) = self.shape.idle;
+        (u64::from(self.cores) * u64::from(numerator) / u64::from(denominator)) as u32
+    }
+
     /// Launches a round that reads copy `from`.
     fn round<R: Precision, V: Kernels>(
         &self,
         given: &WalkContext<R, V>,
         from: usize,
-        (round, flags): (u32, QueueFlags),
+        Round { round, flags, idle_limit }: Round,
     ) -> Result<(), Error> {
-        let QueueShape { local, take, idle, patience, balance, .. } = self.shape;
+        let QueueShape { local, take, patience, balance, .. } = self.shape;
         let lanes = given.device.lanes::<entry::traverse_queue<V>>();
         let start = flags.has(QueueFlags::START);
         let copy = balance == Balance::Copy;
@@ -118,8 +149,7 @@ impl Queue {
             round,
             segment: if copy { self.units.len() } else { 0 },
             take,
-            // At most the number of cores, since the share is at most 1.
-            idle_limit: (self.cores as u64 * idle.0 as u64 / idle.1 as u64) as u32,
+            idle_limit,
             patience,
             full: match (copy, alone) {
                 (true, _) => local.saturating_sub(lanes),
@@ -150,7 +180,7 @@ impl Queue {
         let (mut from, mut flags) = (0, QueueFlags::START);
         loop {
             self.idle.clear()?;
-            self.round(given, from, (0, flags))?;
+            self.round(given, from, Round { round: 0, flags, idle_limit: self.idle_limit() })?;
             flags = QueueFlags::NONE;
             let to = 1 - from;
             let counts = self.counts[to].read(self.cores as usize)?;
@@ -202,17 +232,22 @@ impl Queue {
             seed(Output::new(self.units.span(0), self.counts[0].span().part(0, 1)))?;
         }
         self.plan.seeded = seed.is_some();
+        let idle_limit = self.idle_limit();
         if let Some(rounds) = *self.plan.of_last() {
             return (0..rounds).try_for_each(|round| {
                 let start = first.when(round == 0);
                 let last = QueueFlags::LAST.when(round + 1 == rounds);
-                self.round(given, round as usize, (round, start | last))
+                // Rounds that another schedule may need. No block leaves one early, so it leaves to
+                // the next only units that had no room on chip.
+                let is_spare = round + MORE_ROUNDS >= rounds;
+                let idle_limit = if is_spare { NEVER_IDLE } else { idle_limit };
+                self.round(given, round as usize, Round { round, flags: start | last, idle_limit })
             });
         }
         let mut flags = first;
         loop {
             for round in 0..BATCH {
-                self.round(given, round as usize, (round, flags))?;
+                self.round(given, round as usize, Round { round, flags, idle_limit })?;
                 flags = QueueFlags::NONE;
             }
             let left = self.counts[0].read(BATCH as usize + 1)?[BATCH as usize];
@@ -254,10 +289,7 @@ impl<R: Precision, V: Kernels> Walk<R, V> for Queue {
     }
 
     fn finish(&mut self, counters: &Counts) -> Result<(), Error> {
-        // The number of rounds varies from run to run: a plan shrinks by at most one a frame.
-        let rounds = counters[counter::QUEUE_ROUNDS] + MORE_ROUNDS as u64;
-        let rounds = rounds.max(self.plan.of_last().unwrap_or(0).saturating_sub(1) as u64);
-        *self.plan.of_last() = (rounds <= MOST_ROUNDS as u64).then_some(rounds as u32);
+        self.plan.learn(counters[counter::QUEUE_ROUNDS]);
         Ok(())
     }
 
@@ -268,5 +300,41 @@ impl<R: Precision, V: Kernels> Walk<R, V> for Queue {
     fn balance_ms(&self) -> Result<f64, Error> {
         // From 0.0: the sum of no values would be -0.0.
         self.balances.iter().try_fold(0.0, |sum, [from, to]| Ok(sum + from.to(to)?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::emulator::{Emulator, Mode};
+
+    /// A plan that was too short doubles, even if the next schedule needs less; then it shrinks by
+    /// one a frame.
+    #[test]
+    fn a_plan_that_was_too_short_doubles() {
+        let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
+        let short = |plan: &mut Plan, units: u64| {
+            let mut counts = Counts::default();
+            counts[counter::UNFINISHED] = units;
+            plan.grow(&device, &counts).expect("nothing to take")
+        };
+        let mut plan = Plan::default();
+        plan.learn(5);
+        assert_eq!(plan.rounds, [Some(7), None]);
+        assert!(!short(&mut plan, 0) && plan.rounds[0] == Some(7));
+        assert!(short(&mut plan, 3) && plan.rounds[0].is_none());
+        let planned = [4, 4, 4, 20].map(|worked| {
+            plan.learn(worked);
+            plan.rounds[0]
+        });
+        assert_eq!(planned, [14, 13, 12, 22].map(Some));
+        // At most as long as any plan; more rounds are not planned.
+        for _ in 0..8 {
+            assert!(short(&mut plan, 1));
+            plan.learn(1);
+        }
+        assert_eq!(plan.rounds[0], Some(MOST_ROUNDS));
+        plan.learn(u64::from(MOST_ROUNDS));
+        assert_eq!(plan.rounds, [None, None]);
     }
 }
