@@ -1,36 +1,30 @@
 //! Cases of a vertex and a face.
 
-use super::Expect::{Apart, CollisionFilter, Near, Sure};
+use super::Expect::{Apart, Meets, Near, Sure};
 use super::{FACE, Question, Row, vf, with};
 
 /// Motions against [`super::FACE`] at rest.
 const FALLS: [Row<[f64; 3]>; 21] = [
     ("X30", "plain", [2.0, 2.0, 3.0], [2.0, 2.0, -1.0], Sure(0.75)),
-    ("X15", "in the plane, entering", [12.0, 4.0, 0.0], [-4.0, 4.0, 0.0], CollisionFilter(0.5)),
+    ("X15", "in the plane, entering", [12.0, 4.0, 0.0], [-4.0, 4.0, 0.0], Meets(0.5)),
     ("X16", "in the plane, passing", [9.0, -4.0, 0.0], [9.0, 8.0, 0.0], Apart),
     ("X22", "at rest, apart", [2.0, 2.0, 1.0], [2.0, 2.0, 1.0], Apart),
-    ("X22", "at rest, touching", [2.0, 2.0, 0.0], [2.0, 2.0, 0.0], CollisionFilter(0.0)),
-    ("X30", "leaving", [2.0, 2.0, 0.0], [2.0, 2.0, 5.0], CollisionFilter(0.0)),
-    ("X30", "leaving within the plane", [2.0, 2.0, 0.0], [20.0, 2.0, 0.0], CollisionFilter(0.0)),
-    ("X31", "arriving", [2.0, 2.0, 5.0], [2.0, 2.0, 0.0], CollisionFilter(1.0)),
-    ("X31", "arriving at a corner", [4.0, 8.0, 5.0], [0.0, 8.0, 0.0], CollisionFilter(1.0)),
+    ("X22", "at rest, touching", [2.0, 2.0, 0.0], [2.0, 2.0, 0.0], Meets(0.0)),
+    ("X30", "leaving", [2.0, 2.0, 0.0], [2.0, 2.0, 5.0], Meets(0.0)),
+    ("X30", "leaving within the plane", [2.0, 2.0, 0.0], [20.0, 2.0, 0.0], Meets(0.0)),
+    ("X31", "arriving", [2.0, 2.0, 5.0], [2.0, 2.0, 0.0], Meets(1.0)),
+    ("X31", "arriving at a corner", [4.0, 8.0, 5.0], [0.0, 8.0, 0.0], Meets(1.0)),
     ("X32", "almost arriving", [2.0, 2.0, 5.0], [2.0, 2.0, 1e-3], Apart),
     ("X32", "arriving but for less than the tolerance", [2.0, 2.0, 5.0], [2.0, 2.0, 1e-15], Near),
-    ("X33", "at once", [2.0, 2.0, 1e-9], [2.0, 2.0, -1.0], CollisionFilter(1e-9)),
-    ("X33", "at once, below the grid of f64", [2.0, 2.0, 1e-18], [2.0, 2.0, -1.0], CollisionFilter(1e-18)),
+    ("X33", "at once", [2.0, 2.0, 1e-9], [2.0, 2.0, -1.0], Meets(1e-9)),
+    ("X33", "at once, below the grid of f64", [2.0, 2.0, 1e-18], [2.0, 2.0, -1.0], Meets(1e-18)),
     ("X34", "nearer than the tolerance, leaving", [2.0, 2.0, 1e-6], [2.0, 2.0, 5.0], Near),
     ("X35", "fast", [2.0, 2.0, 3e6], [2.0, 2.0, -1e6], Sure(0.75)),
     ("X35", "fast, aside", [2.0, 9.0, 3e6], [2.0, 9.0, -1e6], Apart),
-    ("X36", "at a corner", [0.0, 0.0, 3.0], [0.0, 0.0, -1.0], CollisionFilter(0.75)),
-    ("X36", "at a side", [4.0, 4.0, 3.0], [4.0, 4.0, -1.0], CollisionFilter(0.75)),
+    ("X36", "at a corner", [0.0, 0.0, 3.0], [0.0, 0.0, -1.0], Meets(0.75)),
+    ("X36", "at a side", [4.0, 4.0, 3.0], [4.0, 4.0, -1.0], Meets(0.75)),
     ("X36", "beside a side", [4.001, 4.001, 3.0], [4.001, 4.001, -1.0], Apart),
-    (
-        "X12",
-        "a needle of a path, in the plane, along a side",
-        [8.0, 0.0, 0.0],
-        [16.0, 0.0, 0.0],
-        CollisionFilter(0.0),
-    ),
+    ("X12", "a needle of a path, in the plane, along a side", [8.0, 0.0, 0.0], [16.0, 0.0, 0.0], Meets(0.0)),
     ("X16", "in the plane, towards a side, short of it", [12.0, 4.0, 0.0], [4.5, 4.0, 0.0], Apart),
 ];
 
@@ -48,12 +42,12 @@ pub fn questions() -> Vec<Question> {
         .collect();
     let other = [[8.0, 8.0, 0.0], [8.0, 0.0, 0.0], [0.0, 8.0, 0.0]];
     let [from, to] = [3.0, -1.0].map(|z| with([4.0, 4.0, z], other));
-    all.push(vf(("X36", "at the side of two, the other one"), from, to, CollisionFilter(0.75)));
+    all.push(vf(("X36", "at the side of two, the other one"), from, to, Meets(0.75)));
     for (what, face) in FLAT {
         let to = |x, y, z| with([x, y, z], face);
-        all.push(vf(("X12", what), to(2.0, 2.0, 3.0), to(2.0, 2.0, -1.0), CollisionFilter(0.75)));
+        all.push(vf(("X12", what), to(2.0, 2.0, 3.0), to(2.0, 2.0, -1.0), Meets(0.75)));
         all.push(vf(("X12", what), to(2.0, 3.0, 3.0), to(2.0, 3.0, -1.0), Apart));
-        all.push(vf(("X12", what), to(2.0, 2.0, 0.0), to(2.0, 2.0, 0.0), CollisionFilter(0.0)));
+        all.push(vf(("X12", what), to(2.0, 2.0, 0.0), to(2.0, 2.0, 0.0), Meets(0.0)));
     }
     all.extend(turning());
     all.extend(moving());
@@ -81,8 +75,7 @@ fn turning() -> Vec<Question> {
     let ulp = f64::EPSILON;
     // Without a search, as in f32 alone, only the time is known at which the vertex comes within
     // half the tolerance. That is earlier by its square root.
-    let graze =
-        |what, d, t| Question { is_fine: true, ..grazing("X27", what, d, [8.0; 2], CollisionFilter(t)) };
+    let graze = |what, d, t| Question { is_fine: true, ..grazing("X27", what, d, [8.0; 2], Meets(t)) };
     all.extend([
         graze("tangent", 0.0, 0.5),
         graze("a bit more than tangent", ulp, 0.5 - (ulp / 4.0).sqrt()),

@@ -1,6 +1,6 @@
 //! Limits of the parameters: tolerance, separation, the end of the step; and of size.
 
-use super::Expect::{Apart, CollisionFilter, Near, Sure};
+use super::Expect::{Apart, Meets, Near, Sure};
 use super::{EDGE, FACE, Question, and, ee, vf, with};
 
 pub fn questions() -> Vec<Question> {
@@ -19,9 +19,9 @@ fn still(z: f64) -> super::Four {
 fn ends() -> Vec<Question> {
     let until = |end: f64, q: Question| Question { end, ..q };
     vec![
-        until(0.5, vf(("X31", "at the end of half a step"), still(1.0), still(-1.0), CollisionFilter(0.5))),
+        until(0.5, vf(("X31", "at the end of half a step"), still(1.0), still(-1.0), Meets(0.5))),
         until(0.5, vf(("X32", "after the end of half a step"), still(1.1), still(-0.9), Apart)),
-        until(0.1, vf(("X31", "an end off the grid"), still(1.0), still(-9.0), CollisionFilter(0.1))),
+        until(0.1, vf(("X31", "an end off the grid"), still(1.0), still(-9.0), Meets(0.1))),
     ]
 }
 
@@ -31,12 +31,12 @@ fn separations() -> Vec<Question> {
     let edges = |z: f64| and(EDGE, [[1.0, -1.0, z], [1.0, 1.0, z]]);
     let mut all = vec![
         apart(1.0, vf(("X38", "nearer at the start"), still(0.5), still(0.75), Sure(0.0))),
-        apart(1.0, vf(("X38", "at it at the start"), still(1.0), still(2.0), CollisionFilter(0.0))),
+        apart(1.0, vf(("X38", "at it at the start"), still(1.0), still(2.0), Meets(0.0))),
         apart(1.0, vf(("X38", "beyond it"), still(1.001), still(1.5), Apart)),
         apart(1.0, vf(("X38", "coming near"), still(3.0), still(-1.0), Sure(0.5))),
         apart(1e9, vf(("X38", "far more than they are long"), still(3.0), still(-1.0), Sure(0.0))),
         apart(1.0, ee(("X38", "edges"), edges(3.0), edges(-1.0), Sure(0.5))),
-        apart(1e-12, vf(("X39", "far below f32"), still(3.0), still(-1.0), CollisionFilter(0.75))),
+        apart(1e-12, vf(("X39", "far below f32"), still(3.0), still(-1.0), Meets(0.75))),
     ];
     // A path past a corner at that distance, across all three axes. It is nearest at t = 1/2, and
     // reaches the distance a little before.
@@ -60,7 +60,7 @@ fn separations() -> Vec<Question> {
                 ("X38", "flying by at it, but for 1e-7 less"),
                 by(1.0 - 1e-7, -4.0),
                 by(1.0 - 1e-7, 4.0),
-                CollisionFilter(0.5 - (2e-7f64).sqrt() / 2f64.sqrt() / 8.0),
+                Meets(0.5 - (2e-7f64).sqrt() / 2f64.sqrt() / 8.0),
             ),
         )
     });
@@ -72,17 +72,12 @@ fn tolerances() -> Vec<Question> {
     let mut all = Vec::new();
     for tolerance in [0.0, 5e-324, 1e-300, 1e-12] {
         let adjusted = |q: Question| Question { tolerance, early: 1e-4, ..q };
-        all.push(adjusted(vf(("X40", "hardly a tolerance"), still(3.0), still(-1.0), CollisionFilter(0.75))));
+        all.push(adjusted(vf(("X40", "hardly a tolerance"), still(3.0), still(-1.0), Meets(0.75))));
         all.push(adjusted(vf(("X40", "hardly a tolerance, apart"), still(3.0), still(1.0), Apart)));
     }
     for tolerance in [1.0, 1e300] {
         let adjusted = |q: Question| Question { tolerance, early: 1.0, ..q };
-        all.push(adjusted(vf(
-            ("X40", "a tolerance beyond all"),
-            still(3.0),
-            still(-1.0),
-            CollisionFilter(0.75),
-        )));
+        all.push(adjusted(vf(("X40", "a tolerance beyond all"), still(3.0), still(-1.0), Meets(0.75))));
     }
     // Half of the distance at the start.
     let leaving = vf(("X34", "farther than the tolerance, leaving"), still(1e-6), still(5.0), Apart);
@@ -105,10 +100,10 @@ fn sizes() -> Vec<Question> {
     }
     // Rounded to subnormal floats first: a length has 14,272 units in the last place.
     let tiny = |z: f64| still(z).map(|p| p.map(|x| f64::from((x * 1e-41) as f32)));
-    let subnormal = vf(("X06", "subnormal floats"), tiny(3.0), tiny(-1.0), CollisionFilter(0.75));
+    let subnormal = vf(("X06", "subnormal floats"), tiny(3.0), tiny(-1.0), Meets(0.75));
     all.push(Question { tolerance: 1e-44, blur: 1e-3, early: 1e-2, ..subnormal });
     let tiny = |z: f64| still(z).map(|p| p.map(|x| x * 5e-324));
-    let least = vf(("X06", "the least doubles"), tiny(3.0), tiny(-1.0), CollisionFilter(0.75));
+    let least = vf(("X06", "the least doubles"), tiny(3.0), tiny(-1.0), Meets(0.75));
     all.push(Question { tolerance: 5e-324, early: 1.0, is_fine: true, ..least });
     // An edge of length two million across one of a thousandth.
     let mixed = |z: f64| and([[-1e6, 0.0, 0.0], [1e6, 0.0, 0.0]], [[0.25, -5e-4, z], [0.25, 5e-4, z]]);

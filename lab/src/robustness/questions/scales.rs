@@ -1,6 +1,6 @@
 //! The ends of the range of floats: a contact and a near miss of each directed family.
 
-use super::Expect::{Apart, CollisionFilter, Near, Sure};
+use super::Expect::{Apart, Meets, Near, Sure};
 use super::{EDGE, FACE, Four, Question, and, ee, vf, with};
 
 /// A family, the sizes of its three axes, and whether one axis vanishes next to another: then only
@@ -36,7 +36,7 @@ pub fn questions() -> Vec<Question> {
         };
         let above = |z: f64| sized(with([2.0, 2.0, z], FACE));
         let across = |z: f64| sized(and(EDGE, [[1.0, -1.0, z], [1.0, 1.0, z]]));
-        let (meets, apart) = if lost { (CollisionFilter(0.75), Near) } else { (Sure(0.75), Apart) };
+        let (meets, apart) = if lost { (Meets(0.75), Near) } else { (Sure(0.75), Apart) };
         all.push(adjusted(vf((id, what), above(3.0), above(-1.0), meets)));
         all.push(adjusted(vf((id, what), above(3.0), above(1.0), apart)));
         all.push(adjusted(ee((id, what), across(3.0), across(-1.0), meets)));
@@ -59,7 +59,7 @@ fn faint() -> [Question; 2] {
     );
     let adjusted = |q: Question| Question { is_fine: true, ..q };
     [
-        adjusted(vf(("X63", "at rest in a face, one axis below f32"), rest, rest, CollisionFilter(0.0))),
-        adjusted(ee(("X63", "at rest on an edge, one axis below f32"), cross, cross, CollisionFilter(0.0))),
+        adjusted(vf(("X63", "at rest in a face, one axis below f32"), rest, rest, Meets(0.0))),
+        adjusted(ee(("X63", "at rest on an edge, one axis below f32"), cross, cross, Meets(0.0))),
     ]
 }
