@@ -1,11 +1,12 @@
-//! Bodies and random words for unit tests. Scenes are the lab's, which a unit test cannot ask: it would meet this crate twice.
+//! Bodies and random words for unit tests. The lab has more scenes, but a unit test that used it
+//! would link this crate twice.
 
 use crate::mesh::{Mesh, Positions};
 use crate::scene::Body;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
-/// Random words that hang on `seed` alone.
+/// Random words that depend on `seed` alone.
 pub fn words(seed: u64) -> impl Iterator<Item = u64> {
     let mut rng = SmallRng::seed_from_u64(seed);
     std::iter::repeat_with(move || rng.random())

@@ -211,7 +211,7 @@ pub enum Problem {
     Scene {
         /// The body, the key and the value.
         what: String,
-        /// What to do.
+        /// The remedy.
         advice: String,
     },
     /// An unknown name of a generated scene.

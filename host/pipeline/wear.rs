@@ -51,7 +51,7 @@ mod tests {
     #[test]
     fn what_is_beyond_the_first_frame_is_summed() {
         let mut wear = Wear::default();
-        // The first frame counts nothing, whatever its tests; nor do frames with fewer.
+        // The first frame counts nothing, nor do frames with fewer tests.
         for tests in [9_000, 8_000, 9_000] {
             wear.add(tests);
             assert!(!wear.is_worn(10));

@@ -23,7 +23,7 @@ fn short(device: &Device) -> List<Pair> {
     List::new(device, "candidate triangle pairs", counter::PAIRS, 3).expect("memory")
 }
 
-/// The same, prepared; then its list of pairs is cut to too little room, and the status is told so.
+/// The same, prepared. Then its list of pairs gets too little room, which the status must show.
 fn prepared(device: &Device) -> TypedPipeline<f32> {
     let (mut pipeline, at) = answered(device);
     assert!(pipeline.prepare(&[at]).expect("prepared"));
