@@ -1,6 +1,7 @@
-/* A simulator whose vertices never leave the GPU: a kernel of its own moves them, a frame of nearmiss follows on the same stream, and both
- * are recorded once and launched a thousand times. Each answer is compared with the CPU's. C99, and CUDA's driver by its public names: no
- * toolkit. It ends with 77 where there is no GPU. */
+/* A simulator whose vertices never leave the GPU. Its kernel moves them, and two queries of one
+ * detector follow on the same stream. A graph records all three and is launched a thousand times.
+ * Each answer is compared with the CPU's. C99, and CUDA's driver by its public names: no toolkit.
+ * It ends with 77 if there is no GPU. */
 
 #include "nearmiss.h"
 
@@ -12,7 +13,7 @@
 enum { SIDE = 60, VERTICES = (SIDE + 1) * (SIDE + 1), TRIANGLES = 2 * SIDE * SIDE, NUMBERS = 3 * VERTICES, FRAMES = 1000 };
 #define BYTES (NUMBERS * sizeof(float))
 
-/* Where a vertex was at the end of the last step it is at the start of this one, and it moves on. */
+/* The end of the last step becomes the start of this one, and the vertex moves on. */
 static const char kernel[] =
     ".version 7.5\n.target sm_80\n.address_size 64\n"
     ".visible .entry move(.param .u64 t0, .param .u64 t1, .param .u64 velocity, .param .u32 count)\n"
@@ -27,7 +28,7 @@ static const char kernel[] =
 typedef void *Handle;
 typedef unsigned long long Address;
 
-/* What is used of the driver. */
+/* Functions of the driver. */
 static struct {
     int (*init)(unsigned), (*device)(int *, int), (*context)(Handle *, unsigned, int), (*stream)(Handle *, unsigned);
     int (*load)(Handle *, const void *), (*function)(Handle *, Handle, const char *), (*allocate)(Address *, size_t);
@@ -107,14 +108,13 @@ static void sheet(float *to, float height, float tilt)
         }
 }
 
-/* A ground that stands, and a sheet that falls through it. */
+/* A fixed ground, and a sheet that falls through it. */
 static NearmissDetector *detector_on(const NearmissDevice *device)
 {
     static float ground[NUMBERS];
     NearmissScene *scene;
     NearmissDetector *detector;
     NearmissBody body = nearmiss_body();
-    NearmissQuery query = nearmiss_query(NEARMISS_CONTINUOUS);
     int i, j, k = 0;
     for (i = 0; i < SIDE; i++)
         for (j = 0; j < SIDE; j++) {
@@ -123,25 +123,24 @@ static NearmissDetector *detector_on(const NearmissDevice *device)
             memcpy(triangles[k++], first, sizeof first);
             memcpy(triangles[k++], second, sizeof second);
         }
-    check(nearmiss_scene_new(&scene, &error));
+    check(nearmiss_scene_create(&scene, &error));
     sheet(ground, 0, 0);
     body.triangles = triangles[0];
     body.triangle_count = TRIANGLES;
     body.name = "ground";
     body.positions = nearmiss_floats(ground, VERTICES);
-    body.kind = NEARMISS_FIXED;
+    body.kind = NEARMISS_BODY_FIXED;
     check(nearmiss_scene_add(scene, &body, NULL, &error));
     body.name = "sheet";
     body.positions = nearmiss_floats(at[0], VERTICES);
-    body.kind = NEARMISS_DEFORMABLE;
+    body.kind = NEARMISS_BODY_DEFORMABLE;
     check(nearmiss_scene_add(scene, &body, NULL, &error));
-    query.tolerance = 1e-6;
-    check(nearmiss_detector_new(device, scene, &query, &detector, &error));
+    check(nearmiss_detector_create(device, scene, &detector, &error));
     nearmiss_scene_free(scene);
     return detector;
 }
 
-/* What an answer has, and its end. */
+/* Figures of an answer, which is freed. */
 static NearmissSummary summed(NearmissAnswer *answer)
 {
     NearmissSummary summary;
@@ -150,18 +149,19 @@ static NearmissSummary summed(NearmissAnswer *answer)
     return summary;
 }
 
-/* What a frame copies to the device, by the detector's own count. */
-static unsigned long long bytes_to_device(NearmissDetector *detector, const NearmissInput *input)
+/* Bytes that a step copies to the device, by the detector's own count. */
+static unsigned long long bytes_to_device(NearmissDetector *detector, const NearmissMotion *motion,
+                                          const NearmissQuery *query)
 {
     const char *text, *mark = "\"to_device\":{";
     unsigned long long sum = 0, bytes;
     NearmissAnswer *answer;
     int i;
     for (i = 0; i < 3; i++) {
-        check(nearmiss_detector_frame(detector, input, 1, &answer, &error));
+        check(nearmiss_detector_step(detector, motion, 1, query, &answer, &error));
         nearmiss_answer_free(answer);
     }
-    check(nearmiss_detector_plan(detector, &text, &error));
+    check(nearmiss_detector_plan(detector, query, &text, &error));
     while ((text = strstr(text, mark)) != NULL && (text = strstr(text, "\"bytes\":")) != NULL)
         if (sscanf(text, "\"bytes\":%llu", &bytes) == 1)
             sum += bytes;
@@ -170,18 +170,19 @@ static unsigned long long bytes_to_device(NearmissDetector *detector, const Near
 
 int main(void)
 {
-    Handle context, stream, module, move, graph, recorded = NULL, nodes[256];
+    Handle context, stream, module, move, graph, recorded = NULL, nodes[1024];
     Address arrays[3];
     unsigned count = NUMBERS;
     void *parameters[4] = {&arrays[0], &arrays[1], &arrays[2], &count};
     unsigned long long from_host, from_device;
-    unsigned long found = 0, differ = 0, again = 0;
+    unsigned long found[2] = {0, 0}, differ = 0, again = 0;
     size_t node_count = 0, copies = 0, i;
-    int device_number, type, frame;
+    int device_number, type, frame, k;
     NearmissDevice *gpu, *cpu;
     NearmissDetector *detector, *judge;
     NearmissAnswer *answer;
-    NearmissInput lent, own;
+    NearmissMotion shared, own;
+    NearmissQuery queries[2];
 
     if (nearmiss_abi() != NEARMISS_ABI) {
         fprintf(stderr, "the header is not that of the library %s\n", nearmiss_version());
@@ -208,20 +209,23 @@ int main(void)
     check(nearmiss_device_open(NEARMISS_CPU, 0, &cpu, &error));
     detector = detector_on(gpu);
     judge = detector_on(cpu);
-    own = nearmiss_step(1, nearmiss_floats(at[0], VERTICES), nearmiss_floats(at[1], VERTICES));
-    lent = nearmiss_step(1, nearmiss_floats((const float *)(size_t)arrays[0], VERTICES),
-                         nearmiss_floats((const float *)(size_t)arrays[1], VERTICES));
-    lent.on_device = 1;
-    from_host = bytes_to_device(detector, &own);
-    from_device = bytes_to_device(detector, &lent);
+    queries[0] = nearmiss_query(NEARMISS_CONTINUOUS);
+    queries[0].tolerance = 1e-6;
+    queries[1] = nearmiss_query(NEARMISS_NEAR);
+    queries[1].distance = 0.002;
+    own = nearmiss_motion_step(1, nearmiss_floats(at[0], VERTICES), nearmiss_floats(at[1], VERTICES));
+    shared = nearmiss_motion_step(1, nearmiss_floats((const float *)(size_t)arrays[0], VERTICES),
+                                  nearmiss_floats((const float *)(size_t)arrays[1], VERTICES));
+    shared.on_device = 1;
+    from_host = bytes_to_device(detector, &own, queries);
+    from_device = bytes_to_device(detector, &shared, queries);
 
     for (frame = 0; frame < FRAMES; frame++) {
-        NearmissSummary told, wanted;
+        NearmissSummary own_figures, wanted;
         bool prepared;
         check(nearmiss_detector_is_prepared(detector, &prepared, &error));
         if (!prepared) {
-            check(nearmiss_detector_prepare(detector, &lent, 1, &answer, &error));
-            nearmiss_answer_free(answer);
+            check(nearmiss_detector_prepare(detector, &shared, 1, queries, 2, &error));
             cuda(cu.begin(stream, 0), "recording");
             cuda(cu.launch(move, (NUMBERS + 255) / 256, 1, 1, 256, 1, 1, 0, stream, parameters, NULL), "the kernel");
             check(nearmiss_detector_submit(detector, &error));
@@ -236,22 +240,26 @@ int main(void)
             again++;
         }
         cuda(cu.replay(recorded, stream), "the graph's launch");
-        check(nearmiss_detector_collect(detector, &answer, &error));
-        told = summed(answer);
         memcpy(at[0], at[1], BYTES);
         for (i = 0; i < NUMBERS; i++)
             at[1][i] += velocity[i];
-        check(nearmiss_detector_frame(judge, &own, 1, &answer, &error));
-        wanted = summed(answer);
-        differ += told.hash != wanted.hash || told.contacts != wanted.contacts;
-        found += (unsigned long)told.contacts;
+        check(nearmiss_detector_update(judge, &own, 1, &error));
+        for (k = 0; k < 2; k++) {
+            check(nearmiss_detector_collect(detector, &queries[k], &answer, &error));
+            own_figures = summed(answer);
+            check(nearmiss_detector_query(judge, &queries[k], &answer, &error));
+            wanted = summed(answer);
+            differ += own_figures.hash != wanted.hash || own_figures.contacts != wanted.contacts;
+            found[k] += (unsigned long)own_figures.contacts;
+        }
     }
-    printf("%d frames of a graph of %u nodes, %u of them copies, recorded %lu times: %lu contacts, %lu answers differ from the CPU's\n",
-           FRAMES, (unsigned)node_count, (unsigned)copies, again, found, differ);
-    printf("bytes to the device a frame: %llu from the host, %llu from the device\n", from_host, from_device);
+    printf("%d launches of a graph of %u nodes, %u of them copies, recorded %lu times\n", FRAMES, (unsigned)node_count,
+           (unsigned)copies, again);
+    printf("%lu contacts and %lu near pairs; %lu answers differ from the CPU's\n", found[0], found[1], differ);
+    printf("bytes copied to the device in a step: %llu from the host, %llu from the device\n", from_host, from_device);
     nearmiss_detector_free(detector);
     nearmiss_detector_free(judge);
     nearmiss_device_free(gpu);
     nearmiss_device_free(cpu);
-    return differ != 0 || found < 1000 || from_host < 2 * BYTES || from_device >= 1000;
+    return differ != 0 || found[0] < 1000 || found[1] < 1000 || from_host < 2 * BYTES || from_device >= 1000;
 }

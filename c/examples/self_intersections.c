@@ -1,10 +1,10 @@
-/* Which triangles of a mesh cross each other. C99. */
+/* Crossing triangles of a mesh. C99. */
 
 #include "nearmiss.h"
 
 #include <stdio.h>
 
-/* A strip of two triangles that lies flat, and another that stands through it. */
+/* A strip of two triangles that is flat, and another that stands through it. */
 static const float points[8][3] = {
     {0, 0, 0},    {4, 0, 0},    {0, 4, 0},   {4, 4, 0},
     {1, 1, -0.5f}, {3, 1, -0.5f}, {1, 1, 0.5f}, {3, 1, 0.5f},
@@ -37,15 +37,15 @@ int main(void)
     body.triangle_count = 4;
     error.code = NEARMISS_OK;
     if (nearmiss_device_open(NEARMISS_AUTO, 0, &device, &error) == NEARMISS_OK
-        && nearmiss_scene_new(&scene, &error) == NEARMISS_OK
+        && nearmiss_scene_create(&scene, &error) == NEARMISS_OK
         && nearmiss_scene_add(scene, &body, NULL, &error) == NEARMISS_OK
-        && nearmiss_detector_new(device, scene, &query, &detector, &error) == NEARMISS_OK
-        && nearmiss_detector_detect(detector, &answer, &error) == NEARMISS_OK
+        && nearmiss_detector_create(device, scene, &detector, &error) == NEARMISS_OK
+        && nearmiss_detector_query(detector, &query, &answer, &error) == NEARMISS_OK
         && nearmiss_answer_triangle_pairs(answer, &pairs, &count, &error) == NEARMISS_OK) {
         printf("%u pairs\n", (unsigned)count);
         for (i = 0; i < count; i++)
             printf("%u and %u\n", (unsigned)pairs[i].triangles[0], (unsigned)pairs[i].triangles[1]);
-        /* Both that stand cross the first that lies; the second of them ends in the diagonal, and so touches the other. */
+        /* Both standing triangles cross the first flat one. The second of them ends in the diagonal, so it touches the other. */
         failed = count != 3;
     } else {
         fprintf(stderr, "code %u: %s\n", (unsigned)error.code, error.text);

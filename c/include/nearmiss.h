@@ -1,27 +1,45 @@
-// nearmiss: collision detection for deformable triangle meshes, on the CPU and on NVIDIA GPUs, to the same bit. C99 and C++.
+// nearmiss: exact collision detection for deforming triangle meshes, on CPUs and NVIDIA GPUs. Both
+// return the same bits. For C99 and C++11.
 //
 // Made by cbindgen from c/src; see c/tests/header.rs.
 //
-// - A `NearmissDevice` is where work runs, a `NearmissScene` says which bodies there are, a `NearmissDetector` has both and a
-//   query, and is asked frame after frame. Each frame gives a `NearmissAnswer`. All four are handles: made by a call whose
-//   name ends with `new` or that fills a `NearmissX **`, freed by `nearmiss_..._free`, which takes NULL too.
-// - Handles do not need each other: a device may be freed before its detectors, a scene as soon as its detector is made.
-//   What a call gives as a pointer into a handle stays there until that handle is freed, unless said otherwise.
-// - A call that can fail returns a `NearmissCode`, 0 for success, and tells more in a `NearmissError` of the caller where that
-//   is not NULL. Where it fails a handle that it would have made is NULL, and other results are not written.
-// - Results go where a pointer says. NULL is refused with `NEARMISS_INVALID_ARGUMENT`, but where it is said to mean something. Other pointers
-//   must be of the type that the declaration says, as C asks; results of one call may not overlap.
-// - A handle is used by one thread at a time; two handles, by two. Detectors of one device are one handle in this, and making one is
-//   a use of them; a device's name, kind, limit and end are not: `nearmiss_device_name`, `_is_gpu`, `_limit` and `_free` may be
-//   called while another thread works with its detectors. An answer is a handle by itself.
-//   `nearmiss_interrupt` and `nearmiss_interrupt_clear` may be called from any thread and from a signal handler, at any time.
-// - All that handles share is threads of the host, one a processor, which prepare bodies and put answers in order: the first
-//   CPU or detector of the process starts them, and they stay. A process that was forked since has none of them: there a
-//   call that would need them fails with `NEARMISS_INVALID_ARGUMENT`. Start processes by `posix_spawn` or `exec`, or fork before.
-// - Positions are floats or doubles in any unit, of a size up to 2^480, and finite where a triangle uses them; lengths are in that
-//   unit, times are parts of a step, from 0 to 1. All indices count from 0. Structs of options come from a function that fills in
-//   what is usual, `nearmiss_body()` and `nearmiss_query()`: then set what differs.
-// - A fault of the library comes back as `NEARMISS_BUG`, never as a crash. A detector in which that happened refuses all else.
+// A program in six calls:
+//
+//     nearmiss_device_open(NEARMISS_AUTO, 0, &device, &error);
+//     nearmiss_scene_create(&scene, &error);
+//     nearmiss_scene_add(scene, &body, &id, &error);
+//     nearmiss_detector_create(device, scene, &detector, &error);
+//     nearmiss_detector_update(detector, motions, motion_count, &error);
+//     nearmiss_detector_query(detector, &query, &answer, &error);
+//
+// Handles
+// - `NearmissDevice` is a machine, `NearmissScene` holds bodies, `NearmissDetector` is a scene on a
+//   device, `NearmissAnswer` is the answer to a query. A detector answers queries of all kinds.
+// - A call that fills a `NearmissX **` makes a handle. `nearmiss_..._free` frees it; NULL is fine.
+// - Handles may be freed in any order: detectors keep the machine and a copy of the scene.
+// - A pointer into a handle lives as long as the handle, unless its function says otherwise.
+//
+// Errors
+// - A call returns a `NearmissCode`, 0 for success. A `NearmissError` gets the message.
+//   NULL for it is fine. After an error a handle that was to be made is NULL, and other results are
+//   not written.
+// - A NULL pointer returns `NEARMISS_INVALID_ARGUMENT`, unless its function gives it a meaning.
+// - A fault of the library returns `NEARMISS_BUG`. The detector then refuses all further calls.
+//
+// Numbers
+// - Positions are floats or doubles in any unit, up to 2^480 in size. Vertices of triangles must be
+//   finite. Lengths are in that unit. Times are parts of a step, from 0 to 1. Indices count from 0.
+// - Begin structs by `nearmiss_body()`, `nearmiss_query()` and `nearmiss_motion_...()`, then set
+//   fields. Never fill them by hand: a new version may add fields.
+//
+// Threads
+// - Use a handle from one thread at a time. All detectors of a device count as one handle.
+//   `nearmiss_device_name`, `_is_gpu`, `_set_memory_limit` and `_free` may run beside them. An
+//   answer is a handle by itself.
+// - Any thread and any signal handler may call `nearmiss_interrupt` and `nearmiss_interrupt_clear`.
+// - The first CPU or detector starts one thread a processor. They stay. A process that was forked
+//   later has none of them, and calls that need them return `NEARMISS_INVALID_ARGUMENT`. Start
+//   processes by `posix_spawn` or `exec`, or fork before.
 
 
 #ifndef NEARMISS_H
@@ -31,40 +49,39 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// The version of this header, which changes whenever a struct or a function does. Compare it with `nearmiss_abi()` before any other call: one
-// that takes or returns a struct of another version writes where it may not.
-#define NEARMISS_ABI 2
+// The version of this header. It changes whenever a struct or a function changes. Compare it with
+// `nearmiss_abi()` before any other call: a library of another version has other structs.
+#define NEARMISS_ABI 3
 
-// Bytes of the text of an error.
+// Bytes of an error's text.
 #define NEARMISS_TEXT 1016
 
-// How a call ended: a code for each kind of error, grouped by who must act.
+// Codes of a call's end, one for each kind of error.
 enum NearmissCode
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-    // Done.
+    // Success.
     NEARMISS_OK = 0,
-    // An argument that does not exist or does not go with the others, whatever the data: an
-    // option, a name, a kind, the number of a body, a pointer. Choose again.
+    // An argument without a meaning, whatever the data: an option, a name, a kind, the number of a
+    // body, a pointer. Correct the call.
     NEARMISS_INVALID_ARGUMENT = 1,
     // Data that cannot be used: numbers of a mesh, of positions or of a pose. Correct the data.
     NEARMISS_INPUT = 2,
     // A result could not be written.
     NEARMISS_OUTPUT = 3,
-    // The machine refused. See what its driver says.
+    // The machine or its driver failed. The message quotes it.
     NEARMISS_DEVICE = 4,
     // A measurement is worse than an earlier one.
     NEARMISS_REGRESSION = 5,
-    // Memory ran out. There is no answer, and nothing was lost in silence.
+    // Not enough memory. There is no answer.
     NEARMISS_OUT_OF_MEMORY = 6,
-    // The GPU's kernels were made from other sources than the library. Build again.
-    NEARMISS_STAMP = 7,
-    // A fault of nearmiss itself. Tell us.
+    // The GPU's kernels were made from other sources than the library. Build it again.
+    NEARMISS_KERNEL_MISMATCH = 7,
+    // A fault of nearmiss itself. Please report it.
     NEARMISS_BUG = 8,
-    // A `NearmissInterrupt` has ended the call. There is no answer, and the detector can be used
-    // again.
+    // A `NearmissInterrupt` ended the call. There is no answer; the detector can be used again.
     NEARMISS_INTERRUPTED = 9,
 };
 #ifndef __cplusplus
@@ -75,18 +92,16 @@ typedef uint32_t NearmissCode;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// Which features meet.
+// Kinds of feature pairs.
 enum NearmissKind
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-    // `a` is a vertex, `b` a face of the same body or of one with a larger number.
+    // Feature a is a vertex, feature b a face.
     NEARMISS_VF = 0,
-    // `a` is a face, `b` a vertex of a body with a larger number.
-    NEARMISS_FV = 1,
-    // Two edges, numbered by (larger vertex, smaller vertex), ascending.
-    NEARMISS_EE = 2,
+    // Both features are edges, numbered in ascending order of (larger vertex, smaller vertex).
+    NEARMISS_EE = 1,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -96,18 +111,19 @@ typedef uint32_t NearmissKind;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// How sure an answer is.
+// Certainty of a contact.
 enum NearmissStatus
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-    // A solver that can be wrong says so.
-    NEARMISS_CONTACT = 0,
-    // They meet, proven, first in `[toi, toi_upper]`.
-    NEARMISS_CERTIFIED = 1,
-    // They come nearer than the tolerance, or the budget ended; if they meet, not before `toi`. Proven as well.
-    NEARMISS_UNDECIDED = 2,
+    // Reported by a solver without a proof.
+    NEARMISS_STATUS_UNVERIFIED = 0,
+    // Proven: the pair collides, first within `[toi, toi_upper]`.
+    NEARMISS_STATUS_CERTIFIED = 1,
+    // The pair comes nearer than the tolerance, or `max_iterations` ended. Proven: if it collides,
+    // not before `toi`.
+    NEARMISS_STATUS_UNDECIDED = 2,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -117,7 +133,7 @@ typedef uint32_t NearmissStatus;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// What is nearest of two features.
+// The parts of two features that are nearest.
 enum NearmissClosest
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
@@ -140,7 +156,8 @@ typedef uint32_t NearmissClosest;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// What the entries of a list on the device are. Vertices, triangles and edges are numbered through all bodies.
+// Types of entries of a list on the device. Vertices, triangles and edges are numbered through all
+// bodies.
 enum NearmissEntries
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
@@ -148,11 +165,12 @@ enum NearmissEntries
  {
     // `NearmissDevicePair`: two triangles.
     NEARMISS_TRIANGLE_PAIRS = 0,
-    // `NearmissDeviceHit`: a vertex and a face, or two edges, and when they first meet. None of an earliest query.
+    // `NearmissDeviceHit`: a vertex and a face, or two edges, and their times of contact. An
+    // earliest query has none.
     NEARMISS_CONTACTS = 1,
-    // `NearmissDeviceNearHit`: a vertex and a face, or two edges, and where they are nearest.
+    // `NearmissDeviceNearHit`: a vertex and a face, or two edges, and their nearest points.
     NEARMISS_NEAR_PAIRS = 2,
-    // `NearmissDeviceNearest`: two triangles, how far apart they are, and where.
+    // `NearmissDeviceNearest`: two triangles, their distance and nearest points.
     NEARMISS_NEAREST = 3,
 };
 #ifndef __cplusplus
@@ -163,7 +181,7 @@ typedef uint32_t NearmissEntries;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// Which machine to take.
+// Machines to choose from.
 enum NearmissBackend
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
@@ -173,7 +191,7 @@ enum NearmissBackend
     NEARMISS_CPU = 0,
     // The first NVIDIA GPU.
     NEARMISS_CUDA = 1,
-    // The GPU where there is one, else the CPU.
+    // The first NVIDIA GPU, or the CPU if there is none.
     NEARMISS_AUTO = 2,
 };
 #ifndef __cplusplus
@@ -184,7 +202,7 @@ typedef uint32_t NearmissBackend;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// The kind of numbers that lie in a memory.
+// Types of numbers.
 enum NearmissNumber
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
@@ -192,7 +210,7 @@ enum NearmissNumber
  {
     // Single precision.
     NEARMISS_F32 = 0,
-    // Double precision. Never rounded to singles.
+    // Double precision, never rounded to single.
     NEARMISS_F64 = 1,
 };
 #ifndef __cplusplus
@@ -203,18 +221,19 @@ typedef uint32_t NearmissNumber;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// What a body does from frame to frame.
+// Kinds of bodies.
 enum NearmissBodyKind
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-    // It stands where it was made: built once, costs nothing a frame, and is never tested against what is static too.
-    NEARMISS_FIXED = 0,
-    // It moves as one, by poses.
-    NEARMISS_RIGID = 1,
+    // It never moves. It is built once, costs nothing in later steps, and is not tested against
+    // other fixed bodies.
+    NEARMISS_BODY_FIXED = 0,
+    // It moves by poses.
+    NEARMISS_BODY_RIGID = 1,
     // Each vertex moves by itself.
-    NEARMISS_DEFORMABLE = 2,
+    NEARMISS_BODY_DEFORMABLE = 2,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -224,16 +243,15 @@ typedef uint32_t NearmissBodyKind;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// Whether a body is tested against itself. Deformable bodies are by default, rigid bodies if it is
-// on, static bodies never.
+// Whether a body is tested against itself.
 enum NearmissSelfCollision
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-    // The default of its kind, also of a struct of zeros.
+    // Deformable bodies are, rigid and fixed bodies are not. A struct of zeros has this.
     NEARMISS_SELF_COLLISION_DEFAULT = 0,
-    // It is; refused for static bodies.
+    // It is. Refused for fixed bodies.
     NEARMISS_SELF_COLLISION_ON = 1,
     // It is not.
     NEARMISS_SELF_COLLISION_OFF = 2,
@@ -246,47 +264,51 @@ typedef uint32_t NearmissSelfCollision;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// What an input says.
-enum NearmissInputKind
+// Kinds of motions.
+enum NearmissMotionKind
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-    // A deformable body stands at `positions[0]`.
-    NEARMISS_AT = 0,
+    // A deformable body rests at `positions[0]`.
+    NEARMISS_MOTION_POSITIONS = 0,
     // A deformable body moves from `positions[0]` to `positions[1]`, each vertex in a straight
-    // line. Discrete, near and distance queries test it at `positions[0]`; it rests at
-    // `positions[1]` if the next frame does not name it. So of poses.
-    NEARMISS_STEP = 1,
-    // A rigid body stands in `poses[0]`.
-    NEARMISS_POSE = 2,
-    // A rigid body moves from `poses[0]` to `poses[1]`, each vertex in a straight line: give steps in which it turns little.
-    NEARMISS_POSES = 3,
+    // line. Discrete, near and distance queries test it at `positions[0]`. It rests at
+    // `positions[1]` if the next update does not name it.
+    NEARMISS_MOTION_STEP = 1,
+    // A rigid body rests in `poses[0]`.
+    NEARMISS_MOTION_POSE = 2,
+    // A rigid body moves from `poses[0]` to `poses[1]`, each vertex in a straight line: between
+    // the poses it is not rigid, so give steps in which it turns little.
+    NEARMISS_MOTION_POSE_STEP = 3,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
-typedef enum NearmissInputKind NearmissInputKind;
+typedef enum NearmissMotionKind NearmissMotionKind;
 #else
-typedef uint32_t NearmissInputKind;
+typedef uint32_t NearmissMotionKind;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// What is asked of a scene.
+// Kinds of queries.
 enum NearmissQueryKind
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
-    // Which triangle pairs share a point now? Answers `nearmiss_answer_triangle_pairs`.
+    // Pairs of triangles that share a point, at the start of the step. Read them by
+    // `nearmiss_answer_triangle_pairs`.
     NEARMISS_DISCRETE = 0,
-    // Which vertex/face and edge/edge pairs meet within the step, and when first? Answers `nearmiss_answer_contacts`.
+    // Pairs of features that collide within the step, with their times. Read them by
+    // `nearmiss_answer_contacts`.
     NEARMISS_CONTINUOUS = 1,
-    // When does the first of them meet? Answers `nearmiss_answer_earliest`, and
-    // `nearmiss_answer_is_free`.
+    // Time of the first contact of the step. Read it by `nearmiss_answer_earliest`.
     NEARMISS_EARLIEST = 2,
-    // Which vertex/face and edge/edge pairs are within a distance now, and where? Answers `nearmiss_answer_near_pairs`.
+    // Pairs of features within a distance, at the start of the step. Set `distance`. Read them by
+    // `nearmiss_answer_near_pairs`.
     NEARMISS_NEAR = 3,
-    // How far apart are the two bodies that are nearest now, and where? Answers `nearmiss_answer_nearest`.
+    // Distance of the two nearest bodies, at the start of the step. Read it by
+    // `nearmiss_answer_nearest`.
     NEARMISS_DISTANCE = 4,
 };
 #ifndef __cplusplus
@@ -297,16 +319,36 @@ typedef uint32_t NearmissQueryKind;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// The answer to a frame, with the figures of its making. It changes no more, and needs neither detector nor device.
+// When a detector rebuilds its tiles. No answer depends on it.
+enum NearmissRebuild
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // When queries have become slower by as much as rebuilding costs; also by
+    // `nearmiss_detector_rebuild`.
+    NEARMISS_REBUILD_AUTO = 0,
+    // Only by `nearmiss_detector_rebuild`.
+    NEARMISS_REBUILD_MANUAL = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum NearmissRebuild NearmissRebuild;
+#else
+typedef uint32_t NearmissRebuild;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+// The answer to a query. It never changes, and needs neither detector nor device.
 typedef struct NearmissAnswer NearmissAnswer;
 
-// A scene on a device, asked frame after frame.
+// A scene on a device. It answers queries of all kinds, step after step, from one memory.
 typedef struct NearmissDetector NearmissDetector;
 
 // A machine that runs kernels, and its memory.
 typedef struct NearmissDevice NearmissDevice;
 
-// A handle that ends calls early. Any thread may use it at any time, until it is freed.
+// A handle that ends calls early. Any thread may use it, until it is freed.
 typedef struct NearmissInterrupt NearmissInterrupt;
 
 // Bodies, by their numbers.
@@ -316,345 +358,358 @@ typedef struct NearmissScene NearmissScene;
 typedef struct {
     // Their bodies, the smaller number first.
     uint32_t bodies[2];
-    // Their indices in those; of one body the smaller first.
+    // Their indices in these bodies. Within a body the smaller is first.
     uint32_t triangles[2];
 } NearmissTrianglePair;
 
-// What a call has to say, in memory of the caller. It need not be initialised; a call that succeeds clears it.
+// The error of a call, in memory of the caller. It need not be initialised; a call that succeeds
+// clears it.
 typedef struct {
-    // What the call returned.
+    // The code that the call returned.
     NearmissCode code;
-    // Bytes of the whole text without its end, those that had no room included.
+    // Bytes of the whole text without the final zero, also if it was cut.
     uint32_t length;
-    // One sentence that says what to do, in UTF-8, with a zero at its end; cut where it has no room.
+    // One sentence with the problem and the remedy, in UTF-8, with a zero at its end. It is cut if
+    // it is too long.
     char text[NEARMISS_TEXT];
 } NearmissError;
 
-// Two features that meet within the step, or, of a query with a separation, that come so near.
+// Two features that collide within the step: they touch, or come within `min_separation`.
 typedef struct {
-    // Which features.
+    // Vertex and face, or two edges.
     NearmissKind kind;
-    // How sure that is.
+    // Certainty.
     NearmissStatus status;
-    // The bodies of both, the smaller number first.
+    // The bodies of feature a and of feature b.
     uint32_t bodies[2];
-    // The first feature's index in its body.
-    uint32_t a;
-    // The second feature's index in its body.
-    uint32_t b;
-    // First time of contact, in [0, 1]; by a certified solver not after it.
+    // Index of the vertex, or of the first edge, in its body.
+    uint32_t feature_a;
+    // Index of the face, or of the second edge, in its body.
+    uint32_t feature_b;
+    // Time of contact, in [0, 1] of the step. Certified: never later than the first contact.
     double toi;
-    // The time by which they have met, in [toi, 1]; of an undecided pair the end of the step.
+    // Upper bound of the first contact, in [toi, 1]. Undecided: 1.
     double toi_upper;
 } NearmissContact;
 
-// Two features that are within a distance of each other, and where they are nearest.
+// Two features within a distance of each other, and their nearest points.
 typedef struct {
-    // Which features.
+    // Vertex and face, or two edges.
     NearmissKind kind;
-    // What is nearest of the two.
+    // The nearest parts of the two.
     NearmissClosest closest;
-    // The bodies of both, the smaller number first.
+    // The bodies of feature a and of feature b.
     uint32_t bodies[2];
-    // The first feature's index in its body.
-    uint32_t a;
-    // The second feature's index in its body.
-    uint32_t b;
-    // Their squared distance: its root is off by 192 half ulps of their extent at most. A square
-    // below 2^-1022 has fewer digits, one below 2^-1075 is 0, though the features may be apart.
+    // Index of the vertex, or of the first edge, in its body.
+    uint32_t feature_a;
+    // Index of the face, or of the second edge, in its body.
+    uint32_t feature_b;
+    // Squared distance. Its root errs by at most 192 half ulps of the extent of the features. A
+    // square below 2^-1022 has fewer digits; one below 2^-1075 is 0, though the features may be
+    // apart.
     double squared_distance;
-    // Of a vertex and a face the weights of the face's corners; of two edges how far along `a` and along `b`, from the end of the larger
-    // index (0) to the other (1), and 0.
-    double weights[3];
+    // Weights of the four vertices in the nearest points. Vertex/face: the vertex (1), then the
+    // face's corners. Edge/edge: both ends of edge a, then both ends of edge b, the larger index
+    // first. Those of a feature sum to 1.
+    double weights[4];
 } NearmissNearPair;
 
-// The two triangles of different bodies that are nearest, and where.
+// The two nearest triangles of different bodies, and their nearest points.
 typedef struct {
     // Their bodies, the smaller number first.
     uint32_t bodies[2];
-    // Their indices in those.
+    // Their indices in these bodies.
     uint32_t triangles[2];
-    // How far apart they are: 0 if and only if they share a point, else off by 192 half ulps at
-    // most of the larger of two extents: theirs, and that of the truly nearest triangles.
+    // Distance. 0 if and only if they share a point; else it errs by at most 192 half ulps of the
+    // larger extent: of these triangles, or of the truly nearest ones.
     double distance;
-    // Of each the weights of its corners at the nearest point.
+    // Weights of the corners of each triangle in its nearest point.
     double weights[2][3];
-    // Those points.
+    // The nearest points.
     double points[2][3];
 } NearmissNearest;
 
-// Milliseconds of each stage of a frame, on the device's own clock, but for the last two.
+// Rows of numbers, such as positions of three numbers a row. Gaps between rows are not read.
 typedef struct {
-    // Vertices of the bodies that were moved, with what was uploaded for them.
-    double place;
-    // Tiles or trees, when they were last made.
-    double construct;
-    // Volumes of the leaves.
-    double fit;
-    // All other volumes.
-    double refit;
-    // Candidates.
-    double traverse;
-    // Evening out the queues of work, where that is a step of its own.
-    double balance;
-    // Contacts.
-    double narrow;
-    // Contacts in canonical order, on a GPU.
-    double order;
-    // From positions to contacts; placing, construction and ordering not.
-    double total;
-    // The host's own time until a GPU had the frame to do.
-    double launch;
-    // What the caller waited for, without the copy into the answer's handle.
-    double wall;
-} NearmissStages;
-
-// Figures of an answer.
-typedef struct {
-    // How many contacts or pairs there are; of an earliest query, and of a distance, 1 or 0.
-    uint64_t contacts;
-    // Triangle pairs that the volumes let through.
-    uint64_t triangle_pairs;
-    // Pairs that the narrow test was asked.
-    uint64_t candidates;
-    // How many are neither confirmed nor refuted; of an earliest query 1 if its time is that of
-    // such a pair, else 0.
-    uint64_t undecided;
-    // How often a list was too short and a part of the frame ran again. The answer is whole.
-    uint64_t reruns;
-    // In how many slices the frame was asked, for want of memory; 1 is the whole at once.
-    uint64_t slices;
-    // Most bytes of the device's memory held at once, until then, by all detectors of the device.
-    uint64_t bytes;
-    // Of the canonical answer: the same for equal answers on every machine.
-    uint64_t hash;
-    // Triangle pairs that share a point at the start of the step; 0 if `is_start_checked` is
-    // false.
-    uint64_t starts_crossing;
-    // Whether the start was checked: of a continuous and an earliest query, unless it assumes a
-    // free start.
-    bool is_start_checked;
-    // How many sentences `nearmiss_answer_degraded` has.
-    uint64_t caveats;
-    // Times.
-    NearmissStages ms;
-} NearmissSummary;
-
-// Where the two features of a contact, or of a pair within a distance, are nearest.
-typedef struct {
-    // The bodies of both.
-    uint32_t bodies[2];
-    // How many of the vertices are the first feature's: 1 of a vertex, 2 of an edge, 3 of a face. The others are the second one's.
-    uint32_t first;
-    // The vertices, by their indices in their bodies.
-    uint32_t vertices[4];
-    // How much of each vertex is in its feature's point.
-    double weights[4];
-    // The nearest points of both at the time of contact.
-    double points[2][3];
-    // How far those are apart.
-    double distance;
-    // From the second feature towards the first, of length 1; zeros where nothing tells a direction.
-    double normal[3];
-} NearmissGeometry;
-
-// Rows of numbers, one behind the other: positions, three numbers a row. What lies between the rows is not read.
-typedef struct {
-    // The first number; of memory of a device its address there. NULL where there are no rows.
+    // The first number, aligned; of memory of a device its address there. NULL for no rows.
     const void *data;
-    // How many rows.
+    // Number of rows.
     size_t count;
-    // Bytes from a row to the next, a multiple of the number's size and no less than a row has. 0 for rows without a gap.
+    // Bytes from one row to the next: a multiple of the number's size, at least a row. 0 for rows
+    // without gaps.
     size_t stride;
     // `NEARMISS_F32` or `NEARMISS_F64`.
     uint32_t number;
 } NearmissRows;
 
-// A body to be added to a scene: its mesh, what it does, and which bodies it may meet. Begin with `nearmiss_body()`. All that it points to
-// is copied by the call that takes it.
+// A body to add to a scene: mesh, kind, and collision filter. Begin with `nearmiss_body()`. Calls
+// copy everything that it points to.
 typedef struct {
-    // What messages call it, in UTF-8; NULL for "a body".
+    // The name in messages, in UTF-8. NULL: "a body".
     const char *name;
-    // A point a vertex, in memory of the host.
+    // One point a vertex, in memory of the host.
     NearmissRows positions;
     // Three indices of vertices a triangle, without gaps.
     const uint32_t *triangles;
-    // How many triangles, at least 1.
+    // Number of triangles, at least 1.
     size_t triangle_count;
     // A `NearmissBodyKind`.
     uint32_t kind;
-    // A `NearmissSelfCollision`. Deformable bodies are tested against themselves by default, rigid
-    // bodies if it is on, static bodies never.
+    // A `NearmissSelfCollision`.
     uint32_t self_collision;
-    // Bodies of different environments never meet.
+    // Bodies of different environments do not collide.
     uint32_t environment;
-    // Whether it is in every environment, and `environment` is 0: 0 or 1.
+    // 1: the body is in every environment, and `environment` must be 0. 0: only in `environment`.
     uint32_t everywhere;
-    // Bits of the groups that it is in, at least one: two bodies meet if each is in a group that
-    // the other one's mask has.
+    // Bits of the groups of the body, at least one. Two bodies collide if each is in a group of
+    // the other's mask.
     uint32_t group;
-    // Bits of the groups that it meets; 0 for a body that meets no other.
+    // Bits of the groups that it collides with. 0: it collides with no other body.
     uint32_t mask;
 } NearmissBody;
 
-// A query and its choices. Begin with `nearmiss_query()`. Names are those of the command line; NULL is the default. A choice that the
-// query does not have is refused.
+// A rigid motion of the points of a body's mesh: a rotation, then a translation.
 typedef struct {
-    // A `NearmissQueryKind`.
-    uint32_t kind;
-    // Discrete, exact: whether triangles that share a vertex are told too, where they meet beyond it: 0 or 1.
-    uint32_t adjacent;
-    // Continuous, earliest; certified: the most boxes that are looked at for a pair before it is left undecided; 0 for the default.
-    uint32_t budget;
-    // Continuous, earliest: whether the start of the step is taken to be free of crossing
-    // triangles, and not checked: 0 or 1.
-    uint32_t assume_free;
-    // Near: how far apart two features may be to be listed, a length above 0.
-    double distance;
-    // Certified: how near to contact may count as one, a length; times are early by what it takes to move that far, or less. -1 for
-    // 1e-4 of the mean edge.
-    double tolerance;
-    // Certified: features that come this near are in contact, a length; 0 for touching.
-    double separation;
-    // The test: "exact", "moller" (discrete); "certified", "certified-f64", "certified-f32", "cubic-f64", "cubic-f32" (continuous,
-    // earliest); "bounded". "moller" and the cubics can miss contacts, the others cannot.
-    const char *solver;
-    // The volume: "aabb", "linear", "obb", "obb-child". This and what follows never changes an answer.
-    const char *bv;
-    // "tree" or "tiles".
-    const char *broad;
-    // Of tiles: "hilbert", "runs", "median".
-    const char *order;
-    // Of trees: "levels", "treelets", "bottom-up".
-    const char *refit;
-    // When tiles or trees are made anew: "never", or "auto", the default.
-    const char *rebuild;
-} NearmissQuery;
-
-// A rigid motion of the points of a body's mesh: turned first, then moved.
-typedef struct {
-    // A unit quaternion: x, y, z, w. It may be off unit length by up to 1.2e-4 (2^-13) and is
+    // A unit quaternion: x, y, z, w. Its length may differ from 1 by up to 1.2e-4 (2^-13); it is
     // normalised.
     double rotation[4];
-    // What is added, in the unit of the positions.
+    // Added after the rotation, in the unit of the positions.
     double translation[3];
 } NearmissPose;
 
-// Where a body is at a frame, or at the two ends of a step. Of its parts those are read that `kind` names.
+// The motion of a body in a step, or its place at rest. Make it by `nearmiss_motion_positions`,
+// `_step`, `_pose` or `_pose_step`. Fields that `kind` does not read must be empty.
 typedef struct {
     // The number of the body.
     uint32_t body;
-    // A `NearmissInputKind`.
+    // A `NearmissMotionKind`.
     uint32_t kind;
-    // 0: all is in memory of the host, and copied. 1: it is in memory of the detector's device (on a CPU the host's), is read there,
-    // behind all that is on its stream, and must stay until the frame is answered; of a prepared frame until the next input. Poses are then
-    // a row of three numbers in `positions` and a row of four in `rotations`.
+    // 0: memory of the host, read by the call. 1: memory of the detector's device (on a CPU the
+    // host's), read there, after all earlier work of its stream. It must stay until the query is
+    // answered; of a prepared submission until the next update. A pose on the device is a row of
+    // three numbers in `positions` and a row of four in `rotations`.
     uint32_t on_device;
-    // A row a vertex; of a pose on the device its translation.
+    // One row a vertex. Of a pose on the device: its translation.
     NearmissRows positions[2];
-    // Of a pose on the device: a unit quaternion x, y, z, w, off unit length by at most 1.2e-4.
+    // Of a pose on the device: its unit quaternion x, y, z, w.
     NearmissRows rotations[2];
-    // Of a rigid body whose poses the host has.
+    // Poses in memory of the host.
     NearmissPose poses[2];
-} NearmissInput;
+} NearmissMotion;
 
-// A list in the device's memory.
+// Choices for research. NULL is the default. Volumes, trees and tiles change no answer; a solver
+// can.
 typedef struct {
-    // Where the first entry lies.
+    // Discrete: "exact", "moller". Continuous, earliest: "certified", "certified-f64",
+    // "certified-f32", "cubic-f64", "cubic-f32". "moller" and the cubics can miss collisions.
+    const char *solver;
+    // "aabb", "linear", "obb".
+    const char *bounding_volume;
+    // "tiles", "tree".
+    const char *broad_phase;
+    // Of trees: "levels", "treelets".
+    const char *refit;
+} NearmissResearch;
+
+// A query and its numbers. Begin with `nearmiss_query()`, then set fields. A field that the kind
+// of query does not have is refused if it is set. Numbers may change from call to call: nothing is
+// rebuilt.
+typedef struct {
+    // A `NearmissQueryKind`.
+    uint32_t kind;
+    // Discrete. 1: also test triangles that share a vertex, beyond that vertex. 0: skip them.
+    uint32_t adjacent;
+    // Continuous, earliest. 1: take the start of the step to be free of crossing triangles. 0:
+    // count them.
+    uint32_t assume_free;
+    // Continuous, earliest. Most iterations of the solver for a pair, before the pair is left
+    // undecided. 0: the default.
+    uint32_t max_iterations;
+    // A `NearmissRebuild`.
+    uint32_t rebuild;
+    // Near. Pairs up to this distance are listed, a length above 0.
+    double distance;
+    // Continuous, earliest. Tolerance, a length: a time is early by at most what it takes to move
+    // that far. -1: the default, 1e-4 of the mean edge.
+    double tolerance;
+    // Continuous, earliest. Minimum separation, a length: features that come this near collide.
+    // 0: they touch.
+    double min_separation;
+    // Choices for research. Leave them as they are.
+    NearmissResearch research;
+} NearmissQuery;
+
+// Vertices, weights, points and normal of a contact, or of a near pair. The four vertices are
+// those of feature a, then those of feature b. Vertex/face: the vertex, then the face's three
+// corners. Edge/edge: both ends of edge a, then both ends of edge b, the larger index first.
+typedef struct {
+    // The body of each vertex.
+    uint32_t owner[4];
+    // The vertices, by their indices in their bodies.
+    uint32_t vertices[4];
+    // Weight of each vertex in the nearest point of its feature. Those of a feature sum to 1.
+    double weights[4];
+    // The same, negative for vertices of feature b: their weighted sum is the gap from b to a.
+    double signed_weights[4];
+    // The nearest points of both features, at the time of contact.
+    double points[2][3];
+    // Distance of these points.
+    double distance;
+    // Unit vector from feature b to feature a. Zeros if no direction is defined.
+    double normal[3];
+} NearmissGeometry;
+
+// A list in memory of the device.
+typedef struct {
+    // Address of the first entry.
     uint64_t address;
-    // How many entries there is room for.
+    // Room, in entries.
     uint64_t room;
 } NearmissDeviceList;
 
-// Where the answer of a submitted frame lies in the device's memory, until the detector is asked anything else.
+// Addresses of the answer to a submitted query, in memory of the device. They hold until the
+// detector is no longer prepared.
 typedef struct {
-    // What the entries are.
+    // Type of the entries.
     NearmissEntries entries;
-    // How many lists there are, 0 to 2. Of features one, in which those of vertices and faces come first, if they are in order; else one
-    // of those and one of edges.
+    // Number of lists, 0 to 2. Feature pairs: one list of vertex/face rows, then edge/edge rows,
+    // if they are ordered; else a list of vertex/face rows and a list of edge/edge rows.
     uint32_t list_count;
-    // They.
+    // The lists.
     NearmissDeviceList lists[2];
     // Whether entries are in canonical order.
     bool is_ordered;
     // Whether `earliest` is an address: of an earliest query.
     bool has_earliest;
-    // Where the `NearmissFrameStatus` lies.
+    // Address of the `NearmissFrameStatus`.
     uint64_t status;
-    // Where the earliest time lies: a double, all bits set where nothing meets. The next 8 bytes
-    // are twice those bits, plus 1 if the time is that of an undecided pair and of no contact.
+    // Address of the earliest time: a double, with all bits set if nothing collides. The next 8
+    // bytes are twice those bits, plus 1 if the time is that of an undecided pair only.
     uint64_t earliest;
     // The two vertices of every edge, 8 bytes each; none of a discrete query.
     NearmissDeviceList edges;
-    // In memory of the host, until the next call with the detector: the first vertex, triangle and edge of each body, and at the end how
-    // many there are in all.
+    // In memory of the host, until the next preparation: the first vertex, triangle and edge of
+    // each body, and at the end the numbers of all.
     const uint32_t (*starts)[3];
-    // How many of them: one more than bodies.
+    // Length of `starts`: the number of bodies, and one more.
     size_t start_count;
 } NearmissDeviceAnswer;
 
-// Two triangles, as they lie on the device.
+// Milliseconds of each stage of a query, by the device's clock; `launch` and `wall` by the host's.
+// For diagnosis: stages may change.
 typedef struct {
-    // The first of the two.
-    uint32_t a;
-    // The second.
-    uint32_t b;
+    // Positions of bodies that have moved, with their upload.
+    double place;
+    // Tiles or trees, when they were built last.
+    double construct;
+    // Volumes of triangles.
+    double fit;
+    // All other volumes.
+    double refit;
+    // Candidates.
+    double traverse;
+    // Balancing of work queues, if that is a step of its own.
+    double balance;
+    // Tests of candidates.
+    double narrow;
+    // Sorting of rows, on a GPU.
+    double order;
+    // From positions to rows, without placing, construction and sorting.
+    double total;
+    // The host's work until a GPU had the query to do.
+    double launch;
+    // The whole call, without the copy into the answer.
+    double wall;
+} NearmissStages;
+
+// Figures of an answer.
+typedef struct {
+    // Number of rows. Of an earliest or a distance query: 1 or 0.
+    uint64_t contacts;
+    // Pairs of triangles whose volumes overlap.
+    uint64_t triangle_pairs;
+    // Pairs that were tested.
+    uint64_t candidates;
+    // Undecided pairs. Of an earliest query: 1 if its time is that of an undecided pair, else 0.
+    uint64_t undecided;
+    // Number of reruns, because a list was too short. The answer is whole.
+    uint64_t reruns;
+    // Number of slices. More than 1 if memory was too small for the whole at once.
+    uint64_t slices;
+    // Peak of the device's memory in bytes, of all detectors of the device.
+    uint64_t bytes;
+    // Hash of the rows. Equal answers have equal hashes on every machine.
+    uint64_t hash;
+    // Pairs of triangles that share a point at the start of the step; 0 if it was not checked.
+    uint64_t starts_crossing;
+    // Whether the start of the step was checked: of a continuous or an earliest query, unless it
+    // has `assume_free`.
+    bool is_start_checked;
+    // Number of caveats: see `nearmiss_answer_caveat`.
+    uint64_t caveats;
+    // Times.
+    NearmissStages ms;
+} NearmissSummary;
+
+// Two triangles, in memory of the device.
+typedef struct {
+    // The triangles.
+    uint32_t triangles[2];
 } NearmissDevicePair;
 
-// Two features that meet, as they lie on the device.
+// Two features that collide, in memory of the device.
 typedef struct {
     // The vertex, or the first edge.
-    uint32_t a;
+    uint32_t feature_a;
     // The face, or the second edge.
-    uint32_t b;
-    // No contact before.
+    uint32_t feature_b;
+    // Time of contact, never late.
     double toi;
-    // The first contact is not after; the end of the step, where there need be none.
+    // Upper bound of the first contact; undecided: 1.
     double toi_upper;
-    // 1 contact, 2 undecided; and 4 where the budget ended.
+    // 1: contact. 2: undecided. 4 is added if `max_iterations` ended.
     uint32_t state;
-    // Boxes looked at.
-    uint32_t boxes;
+    // Iterations of the solver.
+    uint32_t iterations;
 } NearmissDeviceHit;
 
-// Two features within a distance, as they lie on the device.
+// Two features within a distance, in memory of the device.
 typedef struct {
     // The vertex, or the first edge.
-    uint32_t a;
+    uint32_t feature_a;
     // The face, or the second edge.
-    uint32_t b;
-    // Their squared distance.
-    double squared;
-    // Where they are nearest: the weights of the face's corners 1 and 2; or how far along both edges.
+    uint32_t feature_b;
+    // Squared distance.
+    double squared_distance;
+    // Nearest points. Vertex/face: weights of the face's corners 1 and 2. Edge/edge: the place on
+    // each edge, from 0 at its larger vertex index to 1.
     double at[2];
 } NearmissDeviceNearHit;
 
-// The two nearest triangles, as they lie on the device.
+// The two nearest triangles, in memory of the device.
 typedef struct {
-    // The triangle of the smaller index.
-    uint32_t a;
-    // The other.
-    uint32_t b;
-    // How far they are apart: 0 only if they share a point.
+    // The triangles, the smaller index first.
+    uint32_t triangles[2];
+    // Distance; 0 only if they share a point.
     double distance;
-    // Of each the weights of corners 1 and 2.
+    // Weights of corners 1 and 2 of each.
     double at[2][2];
     // The nearest points.
     double points[2][3];
 } NearmissDeviceNearest;
 
-// What a submitted frame came to, as it lies on the device.
+// Counts of a submitted query, in memory of the device.
 typedef struct {
     // Entries of the first list; of an earliest query 0.
     uint64_t first;
-    // Entries of the second list. Where one list has both kinds in order, how many of the second kind follow.
+    // Entries of the second list. In one ordered list: the number of edge/edge rows.
     uint64_t second;
-    // How many lists had too little room. Unless this is 0 no part of the answer may be used.
+    // Number of lists that were too short. Unless it is 0, no part of the answer may be used.
     uint64_t short_of_room;
-    // Not 0 where positions or poses of the caller cannot be computed with: then there is no answer.
+    // Not 0 if positions or poses were invalid. Then there is no answer.
     uint64_t invalid;
-    // Triangle pairs that share a point at the start of the step; all bits set if the start is not
-    // checked. Part of the answer: usable only if `short_of_room` and `invalid` are 0.
+    // Triangle pairs that share a point at the start of the step. All bits are set if it was not
+    // checked.
     uint64_t crossing;
 } NearmissFrameStatus;
 
@@ -662,281 +717,308 @@ typedef struct {
 extern "C" {
 #endif // __cplusplus
 
-// The version of the header that this library was built with. This and `nearmiss_version()` are the same in all versions.
+// The version of the header that this library was built with. This function and
+// `nearmiss_version()` are the same in all versions.
 uint32_t nearmiss_abi(void);
 
-// The version of nearmiss, such as "0.1.0". It lives as long as the program.
+// The version of nearmiss, such as "0.1.0". The text lives as long as the program.
 const char *nearmiss_version(void);
 
-// The triangle pairs of a discrete query, ascending by the first triangle and its body, then by the second. The list lives as long as the
-// answer.
+// Triangle pairs of a discrete query, ascending by the first triangle and its body, then by the
+// second. The list lives as long as the answer.
 NearmissCode nearmiss_answer_triangle_pairs(const NearmissAnswer *answer,
                                             const NearmissTrianglePair **items,
                                             size_t *count,
                                             NearmissError *error);
 
-// The contacts of a continuous query, ascending by kind, then by the first feature and its body, then by the second. The list lives as long
-// as the answer.
+// Contacts of a continuous query, in canonical order: the same on every machine. The list lives as
+// long as the answer.
 NearmissCode nearmiss_answer_contacts(const NearmissAnswer *answer,
                                       const NearmissContact **items,
                                       size_t *count,
                                       NearmissError *error);
 
-// The feature pairs of a near query, in the order of contacts. The list lives as long as the answer.
+// Feature pairs of a near query, in the order of contacts. The list lives as long as the answer.
 NearmissCode nearmiss_answer_near_pairs(const NearmissAnswer *answer,
                                         const NearmissNearPair **items,
                                         size_t *count,
                                         NearmissError *error);
 
-// The nearest triangles of a distance query. `is_any` is false, and nothing else written, where no two bodies may meet.
+// The nearest triangles of a distance query. If no two bodies may collide, `is_any` is false and
+// `nearest` is not written.
 NearmissCode nearmiss_answer_nearest(const NearmissAnswer *answer,
                                      bool *is_any,
                                      NearmissNearest *nearest,
                                      NearmissError *error);
 
-// The smallest time of contact of an earliest or a continuous query, in [0, 1]: no contact is before it. `is_any` is false, and the time 1,
-// if nothing meets. Triangles that cross at the start need not meet again:
-// `nearmiss_answer_is_free` says whether the step is free.
+// Earliest time of contact of an earliest or a continuous query, in [0, 1]. No contact is earlier.
+// If nothing collides, `is_any` is false and the time is 1. Triangles that cross at the start need
+// not collide again: see `nearmiss_answer_is_free`.
 NearmissCode nearmiss_answer_earliest(const NearmissAnswer *answer,
                                       bool *is_any,
                                       double *toi,
                                       NearmissError *error);
 
 // Whether the answer proves that nothing touches. Continuous and earliest: the start was checked,
-// no triangles share a point there, and nothing meets within the step. Discrete: no pair of
-// triangles shares a point. Distance: it is above 0, or no two bodies may meet. Near: always
+// no triangles share a point there, and nothing collides within the step. Discrete: no pair of
+// triangles shares a point. Distance: it is above 0, or no two bodies may collide. Near: always
 // false.
 NearmissCode nearmiss_answer_is_free(const NearmissAnswer *answer,
                                      bool *is_free,
                                      NearmissError *error);
 
-// Figures: how much was found, of how many candidates, and how long it took. Cost: a pass over the answer, for its hash.
-NearmissCode nearmiss_answer_summary(const NearmissAnswer *answer,
-                                     NearmissSummary *summary,
-                                     NearmissError *error);
+// Frees the answer, with all lists and texts that it showed.
+void nearmiss_answer_free(NearmissAnswer *answer);
 
-// In what the frame came to less than all that was asked: a sentence each, by its index. Nothing is ever missed for any of them. The text
-// lives as long as the answer.
-NearmissCode nearmiss_answer_degraded(const NearmissAnswer *answer,
-                                      size_t index,
-                                      const char **sentence,
+// A deformable body without a mesh, in environment 0, that collides with all others and itself.
+NearmissBody nearmiss_body(void);
+
+// Copies a scene to a device. The detector answers queries of all kinds. Memory for a kind is
+// taken by its first query. The scene cannot change any more; add bodies by
+// `nearmiss_detector_add`. A scene without bodies has empty answers.
+NearmissCode nearmiss_detector_create(const NearmissDevice *device,
+                                      const NearmissScene *scene,
+                                      NearmissDetector **detector,
                                       NearmissError *error);
 
-// Makes the notes beside an answer, as the command line prints them, and counts them; mostly there
-// are none. `nearmiss_answer_note` returns each. The bodies must be where they were at the frame.
-// Cost: a comparison of both ends of the step if nothing moves; a sort of all vertices if there
-// are 1,000 contacts.
-NearmissCode nearmiss_detector_notes(NearmissDetector *detector,
-                                     NearmissAnswer *answer,
-                                     size_t *count,
-                                     NearmissError *error);
+// Default tolerance of continuous and earliest queries, a length: the smallest of all pairs of
+// bodies. A pair has the smaller one of its bodies: 1e-4 of the body's mean edge.
+NearmissCode nearmiss_detector_tolerance(NearmissDetector *detector,
+                                         double *tolerance,
+                                         NearmissError *error);
 
-// A note that `nearmiss_detector_notes` made, by its index. The text lives until they are made
-// again, and no longer than the answer.
-NearmissCode nearmiss_answer_note(const NearmissAnswer *answer,
-                                  size_t index,
-                                  const char **note,
+// Largest default tolerance of a pair of bodies, a length.
+NearmissCode nearmiss_detector_largest_tolerance(NearmissDetector *detector,
+                                                 double *tolerance,
+                                                 NearmissError *error);
+
+// Rebuilds tiles over moving bodies. It pays when bodies have moved far since tiles were built.
+// Queries do it by themselves, except with `NEARMISS_REBUILD_MANUAL`.
+NearmissCode nearmiss_detector_rebuild(NearmissDetector *detector, NearmissError *error);
+
+// Frees the detector, after all that it has submitted. Its answers stay.
+void nearmiss_detector_free(NearmissDetector *detector);
+
+// Opens a machine. `backend` is a `NearmissBackend`. `threads` is the number of threads of a CPU,
+// at most one a processor; 0 takes all. For `NEARMISS_CUDA` it must be 0; for `NEARMISS_AUTO` it
+// is used if there is no GPU. Cost: about 0.1 s for the context of a GPU.
+//
+// Fails with `NEARMISS_DEVICE` if there is no such machine or its driver refuses.
+NearmissCode nearmiss_device_open(uint32_t backend,
+                                  size_t threads,
+                                  NearmissDevice **device,
                                   NearmissError *error);
 
-// Vertices, weights, points and normal of every contact, or of every pair within a distance, in their order. The bodies must be where they were
-// at the frame. The list lives until this is asked of the answer again. Cost: a copy of all vertices from the device, and a wait; 300 operations a contact.
+// Opens a GPU by its number in the driver, in its primary context, as CUDA's runtime does.
+NearmissCode nearmiss_device_gpu(uint32_t ordinal, NearmissDevice **device, NearmissError *error);
+
+// A GPU by a context and a stream of the caller. All work goes to that stream, after earlier work.
+// `context` is a `CUcontext`, or NULL for the current one of the thread. `stream` is a `CUstream`
+// or a `cudaStream_t`, or NULL for the default stream, which a graph cannot capture.
+//
+// # Safety
+// The stream is of that context, and both outlive the device and all detectors made with it.
+NearmissCode nearmiss_device_from_stream(void *context,
+                                         void *stream,
+                                         NearmissDevice **device,
+                                         NearmissError *error);
+
+// Name of the machine. The text lives as long as the device.
+NearmissCode nearmiss_device_name(const NearmissDevice *device,
+                                  const char **name,
+                                  NearmissError *error);
+
+// Whether the machine is a GPU.
+NearmissCode nearmiss_device_is_gpu(const NearmissDevice *device,
+                                    bool *is_gpu,
+                                    NearmissError *error);
+
+// Sets a limit of the machine's memory in bytes, for all of its detectors together, from now on.
+NearmissCode nearmiss_device_set_memory_limit(const NearmissDevice *device,
+                                              uint64_t bytes,
+                                              NearmissError *error);
+
+// Frees the handle. Detectors of the device stay.
+void nearmiss_device_free(NearmissDevice *device);
+
+// Adds a body, and writes its number to `id`, which may be NULL. Numbers of removed bodies are
+// used again. The next query rebuilds.
+//
+// # Safety
+// Memory that the body points to is there.
+NearmissCode nearmiss_detector_add(NearmissDetector *detector,
+                                   const NearmissBody *body,
+                                   uint32_t *id,
+                                   NearmissError *error);
+
+// Replaces a body by another, of any mesh, under the same number. The next query rebuilds.
+//
+// # Safety
+// Memory that the body points to is there.
+NearmissCode nearmiss_detector_replace(NearmissDetector *detector,
+                                       uint32_t id,
+                                       const NearmissBody *body,
+                                       NearmissError *error);
+
+// Removes a body. The others keep their numbers. The next query rebuilds.
+NearmissCode nearmiss_detector_remove(NearmissDetector *detector,
+                                      uint32_t id,
+                                      NearmissError *error);
+
+// The exit status of the command line for a code: 0 success, 2 invalid argument, 3 invalid input,
+// 130 interrupted, 4 all others.
+uint32_t nearmiss_exit_code(uint32_t code);
+
+// Moves bodies for the next queries. Positions are uploaded once, for any number of queries. A
+// body that is not named rests where it was, or where its step ended.
+//
+// Fails with `NEARMISS_INVALID_ARGUMENT` for a body that is not there, or named twice, or given a
+// motion that its kind does not take. Fails with `NEARMISS_INPUT` for positions that no mesh may
+// have. Then nothing has moved. Positions in memory of a GPU are checked when a query reads them.
+//
+// # Safety
+// So many motions are there, and the memory that they name.
+NearmissCode nearmiss_detector_update(NearmissDetector *detector,
+                                      const NearmissMotion *motions,
+                                      size_t motion_count,
+                                      NearmissError *error);
+
+// Answers a query of the bodies where they are. The answer depends on positions and on the query
+// alone, not on earlier queries. Memory for a kind of query is taken by its first query; other
+// numbers of the same kind rebuild nothing.
+//
+// Fails with `NEARMISS_INVALID_ARGUMENT` for numbers without a meaning. A continuous or an
+// earliest query fails so if the last update named bodies and no step. There is no partial answer.
+//
+// # Safety
+// The names of the query are texts or NULL.
+NearmissCode nearmiss_detector_query(NearmissDetector *detector,
+                                     const NearmissQuery *query,
+                                     NearmissAnswer **answer,
+                                     NearmissError *error);
+
+// Updates and queries in one submission: `nearmiss_detector_update`, then
+// `nearmiss_detector_query`. An error of the motions or of the query's numbers has moved nothing.
+//
+// # Safety
+// So many motions are there, and the memory that they name. The names of the query are texts or
+// NULL.
+NearmissCode nearmiss_detector_step(NearmissDetector *detector,
+                                    const NearmissMotion *motions,
+                                    size_t motion_count,
+                                    const NearmissQuery *query,
+                                    NearmissAnswer **answer,
+                                    NearmissError *error);
+
+// Geometry of every row of an answer to a continuous or a near query, in the order of its rows.
+// The bodies must be where they were at the query. The list lives until the next call of this
+// function with the answer. Cost: a copy of all vertices from the device, and a wait.
 NearmissCode nearmiss_detector_geometry(NearmissDetector *detector,
                                         NearmissAnswer *answer,
                                         const NearmissGeometry **items,
                                         size_t *count,
                                         NearmissError *error);
 
-// Frees the answer, with all that it showed.
-void nearmiss_answer_free(NearmissAnswer *answer);
+// Makes a handle, for `nearmiss_device_with_interrupt`.
+NearmissCode nearmiss_interrupt_create(NearmissInterrupt **interrupt, NearmissError *error);
 
-// A deformable body without a mesh, in environment 0, that meets all others and itself.
-NearmissBody nearmiss_body(void);
-
-// Takes a copy of a scene, to which nothing can be added from then on, to a device and builds its
-// trees. Cost: linear in triangles; memory grows with what is found.
-//
-// A scene without bodies answers nothing. Fails with `NEARMISS_INVALID_ARGUMENT` for choices that do not go
-// together; with `NEARMISS_OUT_OF_MEMORY` and `NEARMISS_DEVICE`.
-//
-// # Safety
-// The names of the query are texts or NULL.
-NearmissCode nearmiss_detector_new(const NearmissDevice *device,
-                                   const NearmissScene *scene,
-                                   const NearmissQuery *query,
-                                   NearmissDetector **detector,
-                                   NearmissError *error);
-
-// The tolerance of a certified solver, a length: as asked, or the smallest default of a pair of
-// bodies, which is the smaller of theirs; -1 of other solvers.
-NearmissCode nearmiss_detector_tolerance(NearmissDetector *detector,
-                                         double *tolerance,
-                                         NearmissError *error);
-
-// The largest tolerance of a pair of bodies, a length: that of `nearmiss_detector_tolerance` if
-// all pairs have the same; -1 of other solvers.
-NearmissCode nearmiss_detector_largest_tolerance(NearmissDetector *detector,
-                                                 double *tolerance,
-                                                 NearmissError *error);
-
-// Makes tiles or trees over what moves anew: pays when bodies have moved far from where these were made.
-NearmissCode nearmiss_detector_rebuild(NearmissDetector *detector,
-                                       NearmissError *error);
-
-// Adds a body, from the next frame on, and tells its number: that of one that was removed, where there is one. `id` may be NULL. Cost: as of
-// making the detector, at the next frame.
-//
-// # Safety
-// What the body points to is there.
-NearmissCode nearmiss_detector_add(NearmissDetector *detector,
-                                   const NearmissBody *body,
-                                   uint32_t *id,
-                                   NearmissError *error);
-
-// Puts another body, of any mesh, in the place of one, from the next frame on. Cost: as of making the detector, at the next frame.
-//
-// # Safety
-// What the body points to is there.
-NearmissCode nearmiss_detector_replace(NearmissDetector *detector,
-                                       uint32_t id,
-                                       const NearmissBody *new_,
-                                       NearmissError *error);
-
-// Takes a body out, from the next frame on; others keep their numbers. Cost: as of making the detector, at the next frame.
-NearmissCode nearmiss_detector_remove(NearmissDetector *detector,
-                                      uint32_t id,
-                                      NearmissError *error);
-
-// Frees the detector; waits for what it has submitted. Its answers stay.
-void nearmiss_detector_free(NearmissDetector *detector);
-
-// Opens a machine: a `NearmissBackend`, on a CPU with so many threads, at most as many as there are processors; 0 for all. Cost: of a GPU
-// some 0.1 s for its context; its kernels are compiled by the driver when first used.
-//
-// Fails with `NEARMISS_DEVICE` when there is no such machine or its driver refuses, and with
-// `NEARMISS_INVALID_ARGUMENT` for threads of `NEARMISS_CUDA`. With `NEARMISS_AUTO` the threads are those of
-// the CPU that is taken if there is no GPU.
-NearmissCode nearmiss_device_open(uint32_t backend,
-                                  size_t threads,
-                                  NearmissDevice **device,
-                                  NearmissError *error);
-
-// Opens the GPU with that number, as the driver counts them, in its primary context, which CUDA's runtime has too.
-NearmissCode nearmiss_device_gpu(uint32_t ordinal,
-                                 NearmissDevice **device,
-                                 NearmissError *error);
-
-// A GPU by a context and a stream of the caller: all work goes to that stream, behind what is there. `context` is a `CUcontext`, NULL for
-// the one that the thread is bound to; `stream` a `CUstream` or `cudaStream_t`, NULL for the default one, which cannot be captured.
-//
-// # Safety
-// The stream is of that context, and both outlive the device and all detectors made with it.
-NearmissCode nearmiss_device_from_stream(void *context,
-                                    void *stream,
-                                    NearmissDevice **device,
-                                    NearmissError *error);
-
-// What the machine calls itself; the text lives as long as the device.
-NearmissCode nearmiss_device_name(const NearmissDevice *device,
-                                  const char **name,
-                                  NearmissError *error);
-
-// Whether it is a GPU.
-NearmissCode nearmiss_device_is_gpu(const NearmissDevice *device,
-                                    bool *is_gpu,
-                                    NearmissError *error);
-
-// Lets the machine use no more than that many bytes of its memory, from now on, for all of its detectors together.
-NearmissCode nearmiss_device_limit(const NearmissDevice *device,
-                                   uint64_t bytes,
-                                   NearmissError *error);
-
-// Frees the handle. The machine goes when its last detector does.
-void nearmiss_device_free(NearmissDevice *device);
-
-// The exit status that the command line has for a code: 0 done, 2 bad arguments, 3 bad input, 130
-// interrupted, 4 all else.
-uint32_t nearmiss_exit_code(uint32_t code);
-
-// Moves bodies to where the inputs say, and answers. A body that is not named rests where it was, or where its step ended. Cost: one
-// submission whatever the number of bodies, and a copy of what the host has.
-//
-// Fails with `NEARMISS_INVALID_ARGUMENT` for a body that is not there, or named twice, or given what its kind does not take; with `NEARMISS_INPUT` for
-// positions that no mesh may have: then nothing has moved. There is no partial answer.
-//
-// # Safety
-// So many inputs are there, and what they point to.
-NearmissCode nearmiss_detector_frame(NearmissDetector *detector,
-                                     const NearmissInput *inputs,
-                                     size_t count,
-                                     NearmissAnswer **answer,
-                                     NearmissError *error);
-
-// Moves bodies as `nearmiss_detector_frame` does, without a query.
-//
-// # Safety
-// So many inputs are there, and what they point to.
-NearmissCode nearmiss_detector_place(NearmissDetector *detector,
-                                     const NearmissInput *inputs,
-                                     size_t count,
-                                     NearmissError *error);
-
-// Answers with the bodies where they are.
-NearmissCode nearmiss_detector_detect(NearmissDetector *detector,
-                                      NearmissAnswer **answer,
-                                      NearmissError *error);
-
-// A deformable body stands there. For memory of the device set `on_device` then.
-NearmissInput nearmiss_at(uint32_t body, NearmissRows positions);
-
-// A deformable body moves from here to there. For memory of the device set `on_device` then.
-NearmissInput nearmiss_step(uint32_t body, NearmissRows from, NearmissRows to);
-
-// A rigid body stands in that pose.
-NearmissInput nearmiss_pose(uint32_t body, NearmissPose pose);
-
-// A rigid body moves from one pose to another.
-NearmissInput nearmiss_poses(uint32_t body, NearmissPose from, NearmissPose to);
-
-// Makes a handle that ends nothing yet. Give it to `nearmiss_device_interruptible`.
-NearmissCode nearmiss_interrupt_new(NearmissInterrupt **interrupt, NearmissError *error);
-
-// A handle that ends the calls of a detector. Free it; the detector may go before it.
+// A handle that ends calls of a detector. Free it before or after the detector.
 NearmissCode nearmiss_detector_interrupter(const NearmissDetector *detector,
                                            NearmissInterrupt **interrupt,
                                            NearmissError *error);
 
-// Another handle of the same machine. The interrupt ends the calls of detectors that are made with
-// it, and their making. Free it as any device.
-NearmissCode nearmiss_device_interruptible(const NearmissDevice *device,
-                                           const NearmissInterrupt *interrupt,
-                                           NearmissDevice **made,
-                                           NearmissError *error);
+// Another handle of the same machine. The interrupt ends calls of detectors that are made with it.
+// Free it as any device.
+NearmissCode nearmiss_device_with_interrupt(const NearmissDevice *device,
+                                            const NearmissInterrupt *interrupt,
+                                            NearmissDevice **made,
+                                            NearmissError *error);
 
-// Ends the call that runs or, if none runs, the next one: it returns `NEARMISS_INTERRUPTED`,
-// without an answer, and the detector can be used again. Bodies that the call named are where it
-// said. One atomic store: safe in a signal handler. NULL does nothing.
+// Ends the call that runs or, if none runs, the next one. The call returns `NEARMISS_INTERRUPTED`
+// and no answer; the detector can be used again. Bodies that the call named have moved. Safe in a
+// signal handler: one atomic store. NULL does nothing.
 void nearmiss_interrupt(const NearmissInterrupt *interrupt);
 
-// Takes back an interrupt that has ended no call yet. As safe as `nearmiss_interrupt`.
+// Clears an interrupt that has ended no call yet. Safe in a signal handler.
 void nearmiss_interrupt_clear(const NearmissInterrupt *interrupt);
 
-// Frees a handle. Devices and detectors that it ends stay.
+// Frees the handle. Its devices and detectors stay.
 void nearmiss_interrupt_free(NearmissInterrupt *interrupt);
 
-// Where the answer of what is submitted will lie, for kernels of the caller behind it. Fails with `NEARMISS_INVALID_ARGUMENT` where the detector is
-// not prepared, or no two of its bodies can meet.
+// A deformable body at rest. If the positions are in memory of the device, set `on_device` then.
+NearmissMotion nearmiss_motion_positions(uint32_t body, NearmissRows positions);
+
+// A deformable body that moves, each vertex in a straight line. If the positions are in memory of
+// the device, set `on_device` then.
+NearmissMotion nearmiss_motion_step(uint32_t body, NearmissRows start, NearmissRows end);
+
+// A rigid body at rest.
+NearmissMotion nearmiss_motion_pose(uint32_t body, NearmissPose pose);
+
+// A rigid body that moves from one pose to another, each vertex in a straight line.
+NearmissMotion nearmiss_motion_pose_step(uint32_t body, NearmissPose start, NearmissPose end);
+
+// Makes the notes of an answer and counts them. Read each by `nearmiss_answer_note`. The bodies
+// must be where they were at the query. Most answers have none. Cost: a comparison of both ends of
+// the step if nothing moves; a sort of all vertices from 1,000 rows on.
+NearmissCode nearmiss_detector_notes(NearmissDetector *detector,
+                                     NearmissAnswer *answer,
+                                     size_t *count,
+                                     NearmissError *error);
+
+// A note that `nearmiss_detector_notes` made, by its index from 0. The text lives until notes are
+// made again, at most as long as the answer.
+NearmissCode nearmiss_answer_note(const NearmissAnswer *answer,
+                                  size_t index,
+                                  const char **note,
+                                  NearmissError *error);
+
+// A caveat of an answer, by its index from 0: a limit that was reached, in a sentence. The summary
+// counts them. No collision of the given motions is missed for any of them. The text lives as long
+// as the answer.
+NearmissCode nearmiss_answer_caveat(const NearmissAnswer *answer,
+                                    size_t index,
+                                    const char **caveat,
+                                    NearmissError *error);
+
+// Addresses of the answer to a prepared query, for kernels of the caller on the same stream. Call
+// it after each `nearmiss_detector_prepare`. Fails with `NEARMISS_INVALID_ARGUMENT` if the query is
+// not prepared with these numbers, or no two bodies may collide.
+//
+// # Safety
+// The names of the query are texts or NULL.
 NearmissCode nearmiss_detector_on_device(NearmissDetector *detector,
+                                         const NearmissQuery *query,
                                          NearmissDeviceAnswer *answer,
                                          NearmissError *error);
 
-// The plan of the last frame that was waited for, as a text of JSON: launches (`build`, `frame`), memory by what it is for (`buffers`), bytes that
-// went to the device and came back (`transfers`), and what the scene does not need (`left_out`). All are the device's own counts. The text
-// lives until this is asked of the detector again. A detector that was asked fewer than two frames asks what is missing.
+// The plan of the last frame of a query, as JSON: launches (`build`, `frame`), memory by its use
+// (`buffers`), bytes copied to the device and back (`transfers`), and stages that the scene does
+// not need (`left_out`). All are the device's own counts. The text lives until the next plan of
+// the detector. If the last two frames were not of this query, the call runs it.
+//
+// # Safety
+// The names of the query are texts or NULL.
 NearmissCode nearmiss_detector_plan(NearmissDetector *detector,
+                                    const NearmissQuery *query,
                                     const char **json,
                                     NearmissError *error);
 
-// A query of that kind with all choices at their defaults; of what is near the distance is still to be said.
+// Positions of a body at the start and at the end of the step, as three doubles a vertex. `start`
+// and `end` have room for `vertex_count` vertices, as many as the body has. Either may be NULL.
+// Both ends are equal for a body at rest. Vertices of a rigid body are in its poses. Cost: if a
+// body was moved from memory of the device, a copy of all vertices, and a wait.
+//
+// # Safety
+// A pointer that is not NULL has room for three doubles a vertex.
+NearmissCode nearmiss_detector_download_positions(NearmissDetector *detector,
+                                                  uint32_t body,
+                                                  double *start,
+                                                  double *end,
+                                                  size_t vertex_count,
+                                                  NearmissError *error);
+
+// A query of a `NearmissQueryKind` with defaults. Of a near query, set `distance`.
 NearmissQuery nearmiss_query(uint32_t kind);
 
 // `count` points of three floats, without gaps.
@@ -946,51 +1028,70 @@ NearmissRows nearmiss_floats(const float *points, size_t count);
 NearmissRows nearmiss_doubles(const double *points, size_t count);
 
 // A scene without bodies.
-NearmissCode nearmiss_scene_new(NearmissScene **scene, NearmissError *error);
+NearmissCode nearmiss_scene_create(NearmissScene **scene, NearmissError *error);
 
-// Adds a body and tells its number: they are counted from 0. `id` may be NULL. Cost: a copy of the mesh, and a pass over it.
+// Adds a body and writes its number to `id`, which may be NULL. Numbers count from 0. Cost: a copy
+// of the mesh, and a pass over it.
 //
-// Fails with `NEARMISS_INPUT` for positions that are not finite or too large, and for indices out of range, naming the first; with
-// `NEARMISS_INVALID_ARGUMENT` for a body that cannot be, and for a scene of which a detector has a copy.
-// Then nothing is added.
+// Fails with `NEARMISS_INPUT` for positions that are not finite or too large and for indices out
+// of range, naming the first. Fails with `NEARMISS_INVALID_ARGUMENT` for a field without a
+// meaning, and for a scene of which a detector has a copy. Then nothing is added.
 //
 // # Safety
-// What the body points to is there.
+// Memory that the body points to is there.
 NearmissCode nearmiss_scene_add(NearmissScene *scene,
                                 const NearmissBody *body,
                                 uint32_t *id,
                                 NearmissError *error);
 
-// Frees the scene. Detectors have their own.
+// Frees the scene. Detectors keep their copies.
 void nearmiss_scene_free(NearmissScene *scene);
 
-// Prepares frames that the host does not wait for: says where on the device bodies will be found (`on_device` of each input is 1), answers
-// the frame that is there now, and takes all memory. Then `nearmiss_detector_submit` takes no memory and waits for nothing. Bodies that are
-// not named rest. Any other call that changes the detector ends it.
+// Prepares submissions of several queries. Each motion is in memory of the device (`on_device` is
+// 1); write new positions there between submissions. Bodies that are not named rest. The call
+// runs the queries and takes all memory. `nearmiss_detector_submit` then allocates nothing and
+// waits for nothing. Any other call that changes the detector ends the preparation.
+//
+// Fails with `NEARMISS_INVALID_ARGUMENT` for no query, and for two queries that differ in numbers
+// alone.
 //
 // # Safety
-// So many inputs are there; what they point to stays, and is written between frames alone, until another input or the end of the detector.
+// So many motions and queries are there. Memory of the motions stays until the next update or the
+// end of the detector. The names of the queries are texts or NULL.
 NearmissCode nearmiss_detector_prepare(NearmissDetector *detector,
-                                       const NearmissInput *inputs,
-                                       size_t count,
-                                       NearmissAnswer **answer,
+                                       const NearmissMotion *motions,
+                                       size_t motion_count,
+                                       const NearmissQuery *queries,
+                                       size_t query_count,
                                        NearmissError *error);
 
-// Whether frames may be submitted, and what was recorded of one run again: it was prepared, and nothing has changed since.
+// Whether the detector is prepared: `nearmiss_detector_submit` may be called, and a recording of
+// it may be launched again. Nothing has changed the detector since `nearmiss_detector_prepare`.
 NearmissCode nearmiss_detector_is_prepared(NearmissDetector *detector,
                                            bool *is_prepared,
                                            NearmissError *error);
 
-// Submits a frame to the device's stream, with bodies where their memory says when its turn comes: launches alone, so it may be called while
-// that stream is captured, and the graph launched as often as wanted. On a CPU it is done when this returns.
-NearmissCode nearmiss_detector_submit(NearmissDetector *detector,
-                                      NearmissError *error);
+// Submits the prepared queries to the stream of the device. Positions are read there when its turn
+// comes. The call launches kernels and does nothing else, so a CUDA graph may capture it and be
+// launched any number of times. On a CPU the work is done when the call returns.
+NearmissCode nearmiss_detector_submit(NearmissDetector *detector, NearmissError *error);
 
-// Waits for what was submitted last, or recorded and launched again, and brings the answer. Where a list had too little room it grows and the
-// frame is asked again: the answer is whole, and the detector no longer prepared.
+// Waits for the last submission, or for the last launch of its recording, and copies the answer to
+// one of its queries. If a list was too short it grows and the query runs again: the answer is
+// whole, and the detector is no longer prepared. A query that was not prepared with these numbers
+// runs too, with the bodies where they are.
+//
+// # Safety
+// The names of the query are texts or NULL.
 NearmissCode nearmiss_detector_collect(NearmissDetector *detector,
+                                       const NearmissQuery *query,
                                        NearmissAnswer **answer,
                                        NearmissError *error);
+
+// Figures of an answer: rows, candidates, times. Cost: a pass over the rows, for their hash.
+NearmissCode nearmiss_answer_summary(const NearmissAnswer *answer,
+                                     NearmissSummary *summary,
+                                     NearmissError *error);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -1,13 +1,12 @@
-//! Where work runs.
+//! The machine that runs queries.
 
 use crate::error::{NearmissCode, NearmissError, call, free, given, make, refused};
 use nearmiss::Device;
 use nearmiss::device::Backend;
-use nearmiss::words::counted;
 use std::ffi::{CString, c_char, c_void};
 use std::mem::MaybeUninit;
 
-/// Which machine to take.
+/// Machines to choose from.
 #[allow(non_camel_case_types, reason = "as C sees them")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
@@ -16,7 +15,7 @@ pub enum NearmissBackend {
     NEARMISS_CPU = 0,
     /// The first NVIDIA GPU.
     NEARMISS_CUDA = 1,
-    /// The GPU where there is one, else the CPU.
+    /// The first NVIDIA GPU, or the CPU if there is none.
     NEARMISS_AUTO = 2,
 }
 
@@ -34,12 +33,11 @@ impl From<Device> for NearmissDevice {
     }
 }
 
-/// Opens a machine: a `NearmissBackend`, on a CPU with so many threads, at most as many as there are processors; 0 for all. Cost: of a GPU
-/// some 0.1 s for its context; its kernels are compiled by the driver when first used.
+/// Opens a machine. `backend` is a `NearmissBackend`. `threads` is the number of threads of a CPU,
+/// at most one a processor; 0 takes all. For `NEARMISS_CUDA` it must be 0; for `NEARMISS_AUTO` it
+/// is used if there is no GPU. Cost: about 0.1 s for the context of a GPU.
 ///
-/// Fails with `NEARMISS_DEVICE` when there is no such machine or its driver refuses, and with
-/// `NEARMISS_INVALID_ARGUMENT` for threads of `NEARMISS_CUDA`. With `NEARMISS_AUTO` the threads are those of
-/// the CPU that is taken if there is no GPU.
+/// Fails with `NEARMISS_DEVICE` if there is no such machine or its driver refuses.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_device_open(
     backend: u32,
@@ -47,37 +45,38 @@ pub extern "C" fn nearmiss_device_open(
     device: Option<&mut MaybeUninit<*mut NearmissDevice>>,
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
-    make(device, "the device", error, || {
+    make(device, "device", error, || {
         let backend = match backend {
             0 => Backend::Cpu,
             1 => Backend::Cuda,
             2 => Backend::Auto,
             other => {
                 let advice = "choose NEARMISS_CPU, NEARMISS_CUDA or NEARMISS_AUTO";
-                return Err(refused(format!("the backend {other}"), advice));
+                return Err(refused(format!("backend is unknown, got {other}"), advice));
             }
         };
         if backend == Backend::Cuda && threads > 0 {
-            // As the library refuses it, in C's words.
-            let what = format!("{} of a GPU, which takes none", counted(threads as u64, "thread", "threads"));
-            return Err(refused(what, "give 0, or choose NEARMISS_CPU"));
+            // As the library refuses it, in words of C.
+            let what = format!("threads of NEARMISS_CUDA must be 0, got {threads}");
+            return Err(refused(what, "pass 0, or choose NEARMISS_CPU"));
         }
         Device::open(backend, (threads > 0).then_some(threads)).map(NearmissDevice::from)
     })
 }
 
-/// Opens the GPU with that number, as the driver counts them, in its primary context, which CUDA's runtime has too.
+/// Opens a GPU by its number in the driver, in its primary context, as CUDA's runtime does.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_device_gpu(
     ordinal: u32,
     device: Option<&mut MaybeUninit<*mut NearmissDevice>>,
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
-    make(device, "the device", error, || Device::gpu(ordinal).map(NearmissDevice::from))
+    make(device, "device", error, || Device::gpu(ordinal).map(NearmissDevice::from))
 }
 
-/// A GPU by a context and a stream of the caller: all work goes to that stream, behind what is there. `context` is a `CUcontext`, NULL for
-/// the one that the thread is bound to; `stream` a `CUstream` or `cudaStream_t`, NULL for the default one, which cannot be captured.
+/// A GPU by a context and a stream of the caller. All work goes to that stream, after earlier work.
+/// `context` is a `CUcontext`, or NULL for the current one of the thread. `stream` is a `CUstream`
+/// or a `cudaStream_t`, or NULL for the default stream, which a graph cannot capture.
 ///
 /// # Safety
 /// The stream is of that context, and both outlive the device and all detectors made with it.
@@ -88,13 +87,13 @@ pub unsafe extern "C" fn nearmiss_device_from_stream(
     device: Option<&mut MaybeUninit<*mut NearmissDevice>>,
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
-    make(device, "the device", error, || {
+    make(device, "device", error, || {
         // SAFETY: the caller's promise.
         unsafe { Device::from_stream(context, stream) }.map(NearmissDevice::from)
     })
 }
 
-/// What the machine calls itself; the text lives as long as the device.
+/// Name of the machine. The text lives as long as the device.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_device_name(
     device: Option<&NearmissDevice>,
@@ -102,13 +101,13 @@ pub extern "C" fn nearmiss_device_name(
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
     call(error, || {
-        let device = given(device, "the device")?;
-        given(name, "the name")?.write(device.name.as_ptr());
+        let device = given(device, "device")?;
+        given(name, "name")?.write(device.name.as_ptr());
         Ok(())
     })
 }
 
-/// Whether it is a GPU.
+/// Whether the machine is a GPU.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_device_is_gpu(
     device: Option<&NearmissDevice>,
@@ -116,26 +115,26 @@ pub extern "C" fn nearmiss_device_is_gpu(
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
     call(error, || {
-        let device = given(device, "the device")?;
-        given(is_gpu, "whether it is a GPU")?.write(device.device.is_gpu());
+        let device = given(device, "device")?;
+        given(is_gpu, "is_gpu")?.write(device.device.is_gpu());
         Ok(())
     })
 }
 
-/// Lets the machine use no more than that many bytes of its memory, from now on, for all of its detectors together.
+/// Sets a limit of the machine's memory in bytes, for all of its detectors together, from now on.
 #[unsafe(no_mangle)]
-pub extern "C" fn nearmiss_device_limit(
+pub extern "C" fn nearmiss_device_set_memory_limit(
     device: Option<&NearmissDevice>,
     bytes: u64,
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
     call(error, || {
-        let _ = given(device, "the device")?.device.clone().with_memory_limit(bytes);
+        let _ = given(device, "device")?.device.clone().with_memory_limit(bytes);
         Ok(())
     })
 }
 
-/// Frees the handle. The machine goes when its last detector does.
+/// Frees the handle. Detectors of the device stay.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_device_free(device: Option<Box<NearmissDevice>>) {
     free(device);

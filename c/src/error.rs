@@ -1,4 +1,4 @@
-//! Codes, texts, and the border that no panic crosses.
+//! Codes and messages. No panic leaves the library.
 
 use nearmiss::Error;
 use std::any::Any;
@@ -6,46 +6,47 @@ use std::ffi::c_char;
 use std::mem::MaybeUninit;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// How a call ended: a code for each kind of error, grouped by who must act.
+/// Codes of a call's end, one for each kind of error.
 #[allow(non_camel_case_types, reason = "as C sees them")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum NearmissCode {
-    /// Done.
+    /// Success.
     NEARMISS_OK = 0,
-    /// An argument that does not exist or does not go with the others, whatever the data: an
-    /// option, a name, a kind, the number of a body, a pointer. Choose again.
+    /// An argument without a meaning, whatever the data: an option, a name, a kind, the number of a
+    /// body, a pointer. Correct the call.
     NEARMISS_INVALID_ARGUMENT = 1,
     /// Data that cannot be used: numbers of a mesh, of positions or of a pose. Correct the data.
     NEARMISS_INPUT = 2,
     /// A result could not be written.
     NEARMISS_OUTPUT = 3,
-    /// The machine refused. See what its driver says.
+    /// The machine or its driver failed. The message quotes it.
     NEARMISS_DEVICE = 4,
     /// A measurement is worse than an earlier one.
     NEARMISS_REGRESSION = 5,
-    /// Memory ran out. There is no answer, and nothing was lost in silence.
+    /// Not enough memory. There is no answer.
     NEARMISS_OUT_OF_MEMORY = 6,
-    /// The GPU's kernels were made from other sources than the library. Build again.
-    NEARMISS_STAMP = 7,
-    /// A fault of nearmiss itself. Tell us.
+    /// The GPU's kernels were made from other sources than the library. Build it again.
+    NEARMISS_KERNEL_MISMATCH = 7,
+    /// A fault of nearmiss itself. Please report it.
     NEARMISS_BUG = 8,
-    /// A `NearmissInterrupt` has ended the call. There is no answer, and the detector can be used
-    /// again.
+    /// A `NearmissInterrupt` ended the call. There is no answer; the detector can be used again.
     NEARMISS_INTERRUPTED = 9,
 }
 
-/// Bytes of the text of an error.
+/// Bytes of an error's text.
 pub const NEARMISS_TEXT: usize = 1016;
 
-/// What a call has to say, in memory of the caller. It need not be initialised; a call that succeeds clears it.
+/// The error of a call, in memory of the caller. It need not be initialised; a call that succeeds
+/// clears it.
 #[repr(C)]
 pub struct NearmissError {
-    /// What the call returned.
+    /// The code that the call returned.
     pub code: NearmissCode,
-    /// Bytes of the whole text without its end, those that had no room included.
+    /// Bytes of the whole text without the final zero, also if it was cut.
     pub length: u32,
-    /// One sentence that says what to do, in UTF-8, with a zero at its end; cut where it has no room.
+    /// One sentence with the problem and the remedy, in UTF-8, with a zero at its end. It is cut if
+    /// it is too long.
     pub text: [c_char; NEARMISS_TEXT],
 }
 
@@ -60,8 +61,8 @@ impl NearmissError {
     }
 }
 
-/// The exit status that the command line has for a code: 0 done, 2 bad arguments, 3 bad input, 130
-/// interrupted, 4 all else.
+/// The exit status of the command line for a code: 0 success, 2 invalid argument, 3 invalid input,
+/// 130 interrupted, 4 all others.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_exit_code(code: u32) -> u32 {
     match code {
@@ -81,29 +82,30 @@ fn code(error: &Error) -> NearmissCode {
         Error::Device { .. } => NearmissCode::NEARMISS_DEVICE,
         Error::Regression { .. } => NearmissCode::NEARMISS_REGRESSION,
         Error::OutOfMemory { .. } | Error::AnswerTooLarge { .. } => NearmissCode::NEARMISS_OUT_OF_MEMORY,
-        Error::KernelMismatch { .. } => NearmissCode::NEARMISS_STAMP,
+        Error::KernelMismatch { .. } => NearmissCode::NEARMISS_KERNEL_MISMATCH,
         Error::Interrupted => NearmissCode::NEARMISS_INTERRUPTED,
-        // A new kind of error needs a code of its own: until then it is our fault.
+        // A new kind of error needs a code of its own.
         _ => NearmissCode::NEARMISS_BUG,
     }
 }
 
-/// Arguments that the library cannot be given.
+/// An argument without a meaning.
 pub(crate) fn refused(what: impl Into<String>, advice: impl Into<String>) -> Error {
     Error::InvalidArgument { what: what.into(), advice: advice.into() }
 }
 
-/// What a pointer of the caller points to.
-pub(crate) fn given<T>(pointer: Option<T>, what: &str) -> Result<T, Error> {
-    pointer.ok_or_else(|| refused(format!("NULL for {what}"), "give a pointer to one"))
+/// A pointer of the caller, by the name of its argument.
+pub(crate) fn given<T>(pointer: Option<T>, name: &str) -> Result<T, Error> {
+    pointer.ok_or_else(|| refused(format!("{name} is NULL"), "pass a valid pointer"))
 }
 
-/// What C calls: all errors and panics become codes here.
+/// The work of a call: errors and panics become codes.
 pub(crate) fn call(
     error: Option<&mut MaybeUninit<NearmissError>>,
     work: impl FnOnce() -> Result<(), Error>,
 ) -> NearmissCode {
-    // What a panic leaves behind is not used again: see `NearmissDetector::work`. Other handles change by one assignment.
+    // A detector is not used again after a panic: see `NearmissDetector::work`. Other handles change
+    // by one assignment.
     let done = catch_unwind(AssertUnwindSafe(work))
         .unwrap_or_else(|panic| Err(Error::Bug { what: sentence(&*panic) }));
     let (code, text) = match &done {
@@ -116,22 +118,22 @@ pub(crate) fn call(
     code
 }
 
-/// The same of what makes a handle: NULL where it fails.
+/// The work of a call that makes a handle: NULL if it fails.
 pub(crate) fn make<T>(
     to: Option<&mut MaybeUninit<*mut T>>,
-    what: &str,
+    name: &str,
     error: Option<&mut MaybeUninit<NearmissError>>,
     work: impl FnOnce() -> Result<T, Error>,
 ) -> NearmissCode {
     call(error, || {
-        let to = given(to, what)?;
+        let to = given(to, name)?;
         to.write(std::ptr::null_mut());
         to.write(Box::into_raw(Box::new(work()?)));
         Ok(())
     })
 }
 
-/// Frees a handle. What its end has to say nobody hears.
+/// Frees a handle. Errors of its end are dropped.
 pub(crate) fn free<T>(handle: Option<Box<T>>) {
     let _ = catch_unwind(AssertUnwindSafe(|| drop(handle)));
 }

@@ -1,131 +1,132 @@
-//! Where the answer of a submitted frame lies.
+//! Answers of a submission, in memory of the device.
 
 use crate::detector::NearmissDetector;
-use crate::error::{NearmissCode, NearmissError, given};
-use nearmiss::Error;
+use crate::error::{NearmissCode, NearmissError, given, refused};
+use crate::query::NearmissQuery;
 use nearmiss::contacts::on_device::{self, DeviceAnswer, DeviceList, Entries};
+use nearmiss::{Error, Query};
 use std::mem::{MaybeUninit, offset_of};
 
-/// What the entries of a list on the device are. Vertices, triangles and edges are numbered through all bodies.
+/// Types of entries of a list on the device. Vertices, triangles and edges are numbered through all
+/// bodies.
 #[allow(non_camel_case_types, reason = "as C sees them")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum NearmissEntries {
     /// `NearmissDevicePair`: two triangles.
     NEARMISS_TRIANGLE_PAIRS = 0,
-    /// `NearmissDeviceHit`: a vertex and a face, or two edges, and when they first meet. None of an earliest query.
+    /// `NearmissDeviceHit`: a vertex and a face, or two edges, and their times of contact. An
+    /// earliest query has none.
     NEARMISS_CONTACTS = 1,
-    /// `NearmissDeviceNearHit`: a vertex and a face, or two edges, and where they are nearest.
+    /// `NearmissDeviceNearHit`: a vertex and a face, or two edges, and their nearest points.
     NEARMISS_NEAR_PAIRS = 2,
-    /// `NearmissDeviceNearest`: two triangles, how far apart they are, and where.
+    /// `NearmissDeviceNearest`: two triangles, their distance and nearest points.
     NEARMISS_NEAREST = 3,
 }
 
-/// A list in the device's memory.
+/// A list in memory of the device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(C)]
 pub struct NearmissDeviceList {
-    /// Where the first entry lies.
+    /// Address of the first entry.
     pub address: u64,
-    /// How many entries there is room for.
+    /// Room, in entries.
     pub room: u64,
 }
 
-/// Where the answer of a submitted frame lies in the device's memory, until the detector is asked anything else.
+/// Addresses of the answer to a submitted query, in memory of the device. They hold until the
+/// detector is no longer prepared.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct NearmissDeviceAnswer {
-    /// What the entries are.
+    /// Type of the entries.
     pub entries: NearmissEntries,
-    /// How many lists there are, 0 to 2. Of features one, in which those of vertices and faces come first, if they are in order; else one
-    /// of those and one of edges.
+    /// Number of lists, 0 to 2. Feature pairs: one list of vertex/face rows, then edge/edge rows,
+    /// if they are ordered; else a list of vertex/face rows and a list of edge/edge rows.
     pub list_count: u32,
-    /// They.
+    /// The lists.
     pub lists: [NearmissDeviceList; 2],
     /// Whether entries are in canonical order.
     pub is_ordered: bool,
     /// Whether `earliest` is an address: of an earliest query.
     pub has_earliest: bool,
-    /// Where the `NearmissFrameStatus` lies.
+    /// Address of the `NearmissFrameStatus`.
     pub status: u64,
-    /// Where the earliest time lies: a double, all bits set where nothing meets. The next 8 bytes
-    /// are twice those bits, plus 1 if the time is that of an undecided pair and of no contact.
+    /// Address of the earliest time: a double, with all bits set if nothing collides. The next 8
+    /// bytes are twice those bits, plus 1 if the time is that of an undecided pair only.
     pub earliest: u64,
     /// The two vertices of every edge, 8 bytes each; none of a discrete query.
     pub edges: NearmissDeviceList,
-    /// In memory of the host, until the next call with the detector: the first vertex, triangle and edge of each body, and at the end how
-    /// many there are in all.
+    /// In memory of the host, until the next preparation: the first vertex, triangle and edge of
+    /// each body, and at the end the numbers of all.
     pub starts: *const [u32; 3],
-    /// How many of them: one more than bodies.
+    /// Length of `starts`: the number of bodies, and one more.
     pub start_count: usize,
 }
 
-/// Two triangles, as they lie on the device.
+/// Two triangles, in memory of the device.
 #[repr(C)]
 pub struct NearmissDevicePair {
-    /// The first of the two.
-    pub a: u32,
-    /// The second.
-    pub b: u32,
+    /// The triangles.
+    pub triangles: [u32; 2],
 }
 
-/// Two features that meet, as they lie on the device.
+/// Two features that collide, in memory of the device.
 #[repr(C)]
 pub struct NearmissDeviceHit {
     /// The vertex, or the first edge.
-    pub a: u32,
+    pub feature_a: u32,
     /// The face, or the second edge.
-    pub b: u32,
-    /// No contact before.
+    pub feature_b: u32,
+    /// Time of contact, never late.
     pub toi: f64,
-    /// The first contact is not after; the end of the step, where there need be none.
+    /// Upper bound of the first contact; undecided: 1.
     pub toi_upper: f64,
-    /// 1 contact, 2 undecided; and 4 where the budget ended.
+    /// 1: contact. 2: undecided. 4 is added if `max_iterations` ended.
     pub state: u32,
-    /// Boxes looked at.
-    pub boxes: u32,
+    /// Iterations of the solver.
+    pub iterations: u32,
 }
 
-/// Two features within a distance, as they lie on the device.
+/// Two features within a distance, in memory of the device.
 #[repr(C)]
 pub struct NearmissDeviceNearHit {
     /// The vertex, or the first edge.
-    pub a: u32,
+    pub feature_a: u32,
     /// The face, or the second edge.
-    pub b: u32,
-    /// Their squared distance.
-    pub squared: f64,
-    /// Where they are nearest: the weights of the face's corners 1 and 2; or how far along both edges.
+    pub feature_b: u32,
+    /// Squared distance.
+    pub squared_distance: f64,
+    /// Nearest points. Vertex/face: weights of the face's corners 1 and 2. Edge/edge: the place on
+    /// each edge, from 0 at its larger vertex index to 1.
     pub at: [f64; 2],
 }
 
-/// The two nearest triangles, as they lie on the device.
+/// The two nearest triangles, in memory of the device.
 #[repr(C)]
 pub struct NearmissDeviceNearest {
-    /// The triangle of the smaller index.
-    pub a: u32,
-    /// The other.
-    pub b: u32,
-    /// How far they are apart: 0 only if they share a point.
+    /// The triangles, the smaller index first.
+    pub triangles: [u32; 2],
+    /// Distance; 0 only if they share a point.
     pub distance: f64,
-    /// Of each the weights of corners 1 and 2.
+    /// Weights of corners 1 and 2 of each.
     pub at: [[f64; 2]; 2],
     /// The nearest points.
     pub points: [[f64; 3]; 2],
 }
 
-/// What a submitted frame came to, as it lies on the device.
+/// Counts of a submitted query, in memory of the device.
 #[repr(C)]
 pub struct NearmissFrameStatus {
     /// Entries of the first list; of an earliest query 0.
     pub first: u64,
-    /// Entries of the second list. Where one list has both kinds in order, how many of the second kind follow.
+    /// Entries of the second list. In one ordered list: the number of edge/edge rows.
     pub second: u64,
-    /// How many lists had too little room. Unless this is 0 no part of the answer may be used.
+    /// Number of lists that were too short. Unless it is 0, no part of the answer may be used.
     pub short_of_room: u64,
-    /// Not 0 where positions or poses of the caller cannot be computed with: then there is no answer.
+    /// Not 0 if positions or poses were invalid. Then there is no answer.
     pub invalid: u64,
-    /// Triangle pairs that share a point at the start of the step; all bits set if the start is not
+    /// Triangle pairs that share a point at the start of the step. All bits are set if it was not
     /// checked. Part of the answer: usable only if `short_of_room` and `invalid` are 0.
     pub crossing: u64,
 }
@@ -150,25 +151,50 @@ impl From<DeviceList> for NearmissDeviceList {
     }
 }
 
-/// Where the answer of what is submitted will lie, for kernels of the caller behind it. Fails with `NEARMISS_INVALID_ARGUMENT` where the detector is
-/// not prepared, or no two of its bodies can meet.
+impl NearmissDetector {
+    /// Why a query has no answer on the device.
+    fn not_on_device(&self, query: &Query) -> Error {
+        let kind = query.kind();
+        if !self.detector.is_prepared() {
+            return refused("detector is not prepared", "call nearmiss_detector_prepare");
+        }
+        if !self.prepared.contains(query) {
+            let what = format!("this {kind} query is not prepared with these numbers");
+            return refused(what, "pass it to nearmiss_detector_prepare");
+        }
+        let what = format!("this {kind} query has no answer on the device: no two bodies may collide");
+        refused(what, "call nearmiss_detector_collect, or change groups and masks")
+    }
+
+    /// Keeps a list that the caller reads until the next preparation.
+    fn keep(&mut self, starts: Vec<[u32; 3]>) -> &[[u32; 3]] {
+        let at = self.starts.iter().position(|kept| *kept == starts).unwrap_or_else(|| {
+            self.starts.push(starts);
+            self.starts.len() - 1
+        });
+        &self.starts[at]
+    }
+}
+
+/// Addresses of the answer to a prepared query, for kernels of the caller on the same stream. Call
+/// it after each `nearmiss_detector_prepare`. Fails with `NEARMISS_INVALID_ARGUMENT` if the query is
+/// not prepared with these numbers, or no two bodies may collide.
+///
+/// # Safety
+/// The names of the query are texts or NULL.
 #[unsafe(no_mangle)]
-pub extern "C" fn nearmiss_detector_on_device(
+pub unsafe extern "C" fn nearmiss_detector_on_device(
     detector: Option<&mut NearmissDetector>,
+    query: Option<&NearmissQuery>,
     answer: Option<&mut MaybeUninit<NearmissDeviceAnswer>>,
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
     NearmissDetector::work(detector, error, |own| {
-        let to = given(answer, "the answer")?;
-        let found = own.detector.on_device(&own.query).ok_or_else(|| Error::InvalidArgument {
-            what: "an answer on the device of a detector that is not prepared, or in which nothing can meet"
-                .into(),
-            advice: "prepare it, or ask by nearmiss_detector_frame".into(),
-        })?;
+        let to = given(answer, "answer")?;
+        // SAFETY: the caller's promise.
+        let query = unsafe { given(query, "query")?.query() }?;
+        let found = own.detector.on_device(&query).ok_or_else(|| own.not_on_device(&query))?;
         let DeviceAnswer { entries, lists, is_ordered, status, earliest, edges, starts, .. } = found;
-        own.starts = starts;
-        let mut both = [NearmissDeviceList::default(); 2];
-        both.iter_mut().zip(&lists).for_each(|(to, list)| *to = (*list).into());
         let entries = match entries {
             Entries::TrianglePairs => NearmissEntries::NEARMISS_TRIANGLE_PAIRS,
             Entries::Contacts => NearmissEntries::NEARMISS_CONTACTS,
@@ -176,6 +202,9 @@ pub extern "C" fn nearmiss_detector_on_device(
             Entries::Nearest => NearmissEntries::NEARMISS_NEAREST,
             other => return Err(Error::Bug { what: format!("entries {other:?} without a name in C") }),
         };
+        let mut both = [NearmissDeviceList::default(); 2];
+        both.iter_mut().zip(&lists).for_each(|(to, list)| *to = (*list).into());
+        let starts = own.keep(starts);
         to.write(NearmissDeviceAnswer {
             entries,
             list_count: lists.len().min(2) as u32,
@@ -185,8 +214,8 @@ pub extern "C" fn nearmiss_detector_on_device(
             status,
             earliest: earliest.unwrap_or(0),
             edges: edges.into(),
-            starts: own.starts.as_ptr(),
-            start_count: own.starts.len(),
+            starts: starts.as_ptr(),
+            start_count: starts.len(),
         });
         Ok(())
     })

@@ -1,35 +1,35 @@
-//! What answers are made of.
+//! Rows of answers.
 
-use nearmiss::contacts::{Closest, ContactGeometry, Kind, NearPair, NearestTriangles, Status, TrianglePair};
+use nearmiss::Contact;
+use nearmiss::contacts::{Closest, Kind, NearPair, NearestTriangles, Status, TrianglePair};
 use nearmiss::scene::BodyId;
-use nearmiss::{Contact, Stages};
 
-/// Which features meet.
+/// Kinds of feature pairs.
 #[allow(non_camel_case_types, reason = "as C sees them")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum NearmissKind {
-    /// `a` is a vertex, `b` a face of the same body or of one with a larger number.
+    /// Feature a is a vertex, feature b a face.
     NEARMISS_VF = 0,
-    /// `a` is a face, `b` a vertex of a body with a larger number.
-    /// Two edges, numbered by (larger vertex, smaller vertex), ascending.
+    /// Both features are edges, numbered in ascending order of (larger vertex, smaller vertex).
     NEARMISS_EE = 1,
 }
 
-/// How sure an answer is.
+/// Certainty of a contact.
 #[allow(non_camel_case_types, reason = "as C sees them")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum NearmissStatus {
-    /// A solver that can be wrong says so.
-    NEARMISS_CONTACT = 0,
-    /// They meet, proven, first in `[toi, toi_upper]`.
-    NEARMISS_CERTIFIED = 1,
-    /// They come nearer than the tolerance, or the budget ended; if they meet, not before `toi`. Proven as well.
-    NEARMISS_UNDECIDED = 2,
+    /// Reported by a solver without a proof.
+    NEARMISS_STATUS_UNVERIFIED = 0,
+    /// Proven: the pair collides, first within `[toi, toi_upper]`.
+    NEARMISS_STATUS_CERTIFIED = 1,
+    /// The pair comes nearer than the tolerance, or `max_iterations` ended. Proven: if it collides,
+    /// not before `toi`.
+    NEARMISS_STATUS_UNDECIDED = 2,
 }
 
-/// What is nearest of two features.
+/// The parts of two features that are nearest.
 #[allow(non_camel_case_types, reason = "as C sees them")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
@@ -44,23 +44,23 @@ pub enum NearmissClosest {
     NEARMISS_EDGE_EDGE = 3,
 }
 
-/// Two features that meet within the step, or, of a query with a separation, that come so near.
+/// Two features that collide within the step: they touch, or come within `min_separation`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct NearmissContact {
-    /// Which features.
+    /// Vertex and face, or two edges.
     pub kind: NearmissKind,
-    /// How sure that is.
+    /// Certainty.
     pub status: NearmissStatus,
-    /// The bodies of both, the smaller number first.
+    /// The bodies of feature a and of feature b.
     pub bodies: [u32; 2],
-    /// The first feature's index in its body.
-    pub a: u32,
-    /// The second feature's index in its body.
-    pub b: u32,
-    /// First time of contact, in [0, 1]; by a certified solver not after it.
+    /// Index of the vertex, or of the first edge, in its body.
+    pub feature_a: u32,
+    /// Index of the face, or of the second edge, in its body.
+    pub feature_b: u32,
+    /// Time of contact, in [0, 1] of the step. Certified: never later than the first contact.
     pub toi: f64,
-    /// The time by which they have met, in [toi, 1]; of an undecided pair the end of the step.
+    /// Upper bound of the first contact, in [toi, 1]. Undecided: 1.
     pub toi_upper: f64,
 }
 
@@ -70,98 +70,52 @@ pub struct NearmissContact {
 pub struct NearmissTrianglePair {
     /// Their bodies, the smaller number first.
     pub bodies: [u32; 2],
-    /// Their indices in those; of one body the smaller first.
+    /// Their indices in these bodies. Within a body the smaller is first.
     pub triangles: [u32; 2],
 }
 
-/// Two features that are within a distance of each other, and where they are nearest.
+/// Two features within a distance of each other, and their nearest points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct NearmissNearPair {
-    /// Which features.
+    /// Vertex and face, or two edges.
     pub kind: NearmissKind,
-    /// What is nearest of the two.
+    /// The nearest parts of the two.
     pub closest: NearmissClosest,
-    /// The bodies of both, the smaller number first.
+    /// The bodies of feature a and of feature b.
     pub bodies: [u32; 2],
-    /// The first feature's index in its body.
-    pub a: u32,
-    /// The second feature's index in its body.
-    pub b: u32,
-    /// Their squared distance: its root is off by 192 half ulps of their extent at most. A square
-    /// below 2^-1022 has fewer digits, one below 2^-1075 is 0, though the features may be apart.
+    /// Index of the vertex, or of the first edge, in its body.
+    pub feature_a: u32,
+    /// Index of the face, or of the second edge, in its body.
+    pub feature_b: u32,
+    /// Squared distance. Its root errs by at most 192 half ulps of the extent of the features. A
+    /// square below 2^-1022 has fewer digits; one below 2^-1075 is 0, though the features may be
+    /// apart.
     pub squared_distance: f64,
-    /// Weights of the four vertices in the nearest points, in the order of `NearmissGeometry`.
+    /// Weights of the four vertices in the nearest points. Vertex/face: the vertex (1), then the
+    /// face's corners. Edge/edge: both ends of edge a, then both ends of edge b, the larger index
+    /// first. Those of a feature sum to 1.
     pub weights: [f64; 4],
 }
 
-/// The two triangles of different bodies that are nearest, and where.
+/// The two nearest triangles of different bodies, and their nearest points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct NearmissNearest {
     /// Their bodies, the smaller number first.
     pub bodies: [u32; 2],
-    /// Their indices in those.
+    /// Their indices in these bodies.
     pub triangles: [u32; 2],
-    /// How far apart they are: 0 if and only if they share a point, else off by 192 half ulps at
-    /// most of the larger of two extents: theirs, and that of the truly nearest triangles.
+    /// Distance. 0 if and only if they share a point; else it errs by at most 192 half ulps of the
+    /// larger extent: of these triangles, or of the truly nearest ones.
     pub distance: f64,
-    /// Of each the weights of its corners at the nearest point.
+    /// Weights of the corners of each triangle in its nearest point.
     pub weights: [[f64; 3]; 2],
-    /// Those points.
+    /// The nearest points.
     pub points: [[f64; 3]; 2],
 }
 
-/// Where the two features of a contact, or of a pair within a distance, are nearest.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct NearmissGeometry {
-    /// The bodies of both.
-    pub bodies: [u32; 2],
-    /// Body of each vertex.
-    pub owners: [u32; 4],
-    /// The vertices, by their indices in their bodies.
-    pub vertices: [u32; 4],
-    /// How much of each vertex is in its feature's point.
-    pub weights: [f64; 4],
-    /// The same with a minus for the second feature.
-    pub signed_weights: [f64; 4],
-    /// The nearest points of both at the time of contact.
-    pub points: [[f64; 3]; 2],
-    /// How far those are apart.
-    pub distance: f64,
-    /// From the second feature towards the first, of length 1; zeros where nothing tells a direction.
-    pub normal: [f64; 3],
-}
-
-/// Milliseconds of each stage of a frame, on the device's own clock, but for the last two.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(C)]
-pub struct NearmissStages {
-    /// Vertices of the bodies that were moved, with what was uploaded for them.
-    pub place: f64,
-    /// Tiles or trees, when they were last made.
-    pub construct: f64,
-    /// Volumes of the leaves.
-    pub fit: f64,
-    /// All other volumes.
-    pub refit: f64,
-    /// Candidates.
-    pub traverse: f64,
-    /// Evening out the queues of work, where that is a step of its own.
-    pub balance: f64,
-    /// Contacts.
-    pub narrow: f64,
-    /// Contacts in canonical order, on a GPU.
-    pub order: f64,
-    /// From positions to contacts; placing, construction and ordering not.
-    pub total: f64,
-    /// The host's own time until a GPU had the frame to do.
-    pub launch: f64,
-    /// What the caller waited for, without the copy into the answer's handle.
-    pub wall: f64,
-}
-
+/// Numbers of both bodies.
 pub(crate) fn numbers(bodies: [BodyId; 2]) -> [u32; 2] {
     bodies.map(|body| body.index() as u32)
 }
@@ -177,13 +131,14 @@ impl From<Kind> for NearmissKind {
 
 impl From<&Contact> for NearmissContact {
     fn from(contact: &Contact) -> NearmissContact {
-        let Contact { kind, bodies, feature_a: a, feature_b: b, toi, toi_upper, status } = *contact;
-        let status = match status {
-            Status::Unverified => NearmissStatus::NEARMISS_CONTACT,
-            Status::Certified => NearmissStatus::NEARMISS_CERTIFIED,
-            Status::Undecided => NearmissStatus::NEARMISS_UNDECIDED,
+        let status = match contact.status {
+            Status::Unverified => NearmissStatus::NEARMISS_STATUS_UNVERIFIED,
+            Status::Certified => NearmissStatus::NEARMISS_STATUS_CERTIFIED,
+            Status::Undecided => NearmissStatus::NEARMISS_STATUS_UNDECIDED,
         };
-        NearmissContact { kind: kind.into(), status, bodies: numbers(bodies), a, b, toi, toi_upper }
+        let Contact { kind, bodies, feature_a, feature_b, toi, toi_upper, .. } = *contact;
+        let (kind, bodies) = (kind.into(), numbers(bodies));
+        NearmissContact { kind, status, bodies, feature_a, feature_b, toi, toi_upper }
     }
 }
 
@@ -195,15 +150,15 @@ impl From<&TrianglePair> for NearmissTrianglePair {
 
 impl From<&NearPair> for NearmissNearPair {
     fn from(pair: &NearPair) -> NearmissNearPair {
-        let NearPair { kind, bodies, feature_a: a, feature_b: b, squared_distance, weights, closest } = *pair;
-        let closest = match closest {
+        let closest = match pair.closest {
             Closest::VertexFace => NearmissClosest::NEARMISS_VERTEX_FACE,
             Closest::VertexEdge => NearmissClosest::NEARMISS_VERTEX_EDGE,
             Closest::VertexVertex => NearmissClosest::NEARMISS_VERTEX_VERTEX,
             Closest::EdgeEdge => NearmissClosest::NEARMISS_EDGE_EDGE,
         };
+        let NearPair { kind, bodies, feature_a, feature_b, squared_distance, weights, .. } = *pair;
         let (kind, bodies) = (kind.into(), numbers(bodies));
-        NearmissNearPair { kind, closest, bodies, a, b, squared_distance, weights }
+        NearmissNearPair { kind, closest, bodies, feature_a, feature_b, squared_distance, weights }
     }
 }
 
@@ -211,32 +166,5 @@ impl From<&NearestTriangles> for NearmissNearest {
     fn from(nearest: &NearestTriangles) -> NearmissNearest {
         let NearestTriangles { bodies, triangles, distance, weights, points } = *nearest;
         NearmissNearest { bodies: numbers(bodies), triangles, distance, weights, points }
-    }
-}
-
-impl From<&ContactGeometry> for NearmissGeometry {
-    fn from(geometry: &ContactGeometry) -> NearmissGeometry {
-        let ContactGeometry {
-            kind: _,
-            bodies,
-            owners,
-            vertices,
-            weights,
-            signed_weights,
-            points,
-            distance,
-            normal,
-        } = *geometry;
-        let bodies = numbers(bodies);
-        let owners = owners.map(|body| body.index() as u32);
-        NearmissGeometry { bodies, owners, vertices, weights, signed_weights, points, distance, normal }
-    }
-}
-
-impl From<Stages> for NearmissStages {
-    fn from(stages: Stages) -> NearmissStages {
-        let Stages { place, construct, fit, refit, traverse, balance, narrow, order, total, launch, wall } =
-            stages;
-        NearmissStages { place, construct, fit, refit, traverse, balance, narrow, order, total, launch, wall }
     }
 }

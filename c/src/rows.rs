@@ -1,31 +1,32 @@
-//! Numbers of the caller, in memory of the host or of the device.
+//! Arrays of the caller, in memory of the host or of the device.
 
 use crate::error::refused;
 use nearmiss::Error;
-use nearmiss::mesh::Positions;
+use nearmiss::mesh::{Points, Positions};
 use nearmiss::scene::{DeviceRows, Number};
 use std::ffi::{CStr, c_char, c_void};
 
-/// The kind of numbers that lie in a memory.
+/// Types of numbers.
 #[allow(non_camel_case_types, reason = "as C sees them")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum NearmissNumber {
     /// Single precision.
     NEARMISS_F32 = 0,
-    /// Double precision. Never rounded to singles.
+    /// Double precision, never rounded to single.
     NEARMISS_F64 = 1,
 }
 
-/// Rows of numbers, one behind the other: positions, three numbers a row. What lies between the rows is not read.
+/// Rows of numbers, such as positions of three numbers a row. Gaps between rows are not read.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct NearmissRows {
-    /// The first number; of memory of a device its address there. NULL where there are no rows.
+    /// The first number, aligned; of memory of a device its address there. NULL for no rows.
     pub data: *const c_void,
-    /// How many rows.
+    /// Number of rows.
     pub count: usize,
-    /// Bytes from a row to the next, a multiple of the number's size and no less than a row has. 0 for rows without a gap.
+    /// Bytes from one row to the next: a multiple of the number's size, at least a row. 0 for rows
+    /// without gaps.
     pub stride: usize,
     /// `NEARMISS_F32` or `NEARMISS_F64`.
     pub number: u32,
@@ -43,72 +44,115 @@ pub extern "C" fn nearmiss_doubles(points: *const f64, count: usize) -> Nearmiss
     NearmissRows { data: points.cast(), count, stride: 0, number: NearmissNumber::NEARMISS_F64 as u32 }
 }
 
+/// Points in memory of the host: the caller's own if they have no gaps, else a copy.
+pub(crate) enum HostPoints<'a> {
+    Borrowed(Points<'a>),
+    Copied(Positions),
+}
+
+impl HostPoints<'_> {
+    pub(crate) fn points(&self) -> Points<'_> {
+        match self {
+            HostPoints::Borrowed(points) => *points,
+            HostPoints::Copied(positions) => positions.into(),
+        }
+    }
+
+    /// A copy that needs the caller's memory no longer.
+    pub(crate) fn positions(self) -> Result<Positions, Error> {
+        let require = |bytes: usize| nearmiss::memory::require("positions", bytes as u64);
+        Ok(match self {
+            HostPoints::Borrowed(Points::F32(points)) => {
+                require(size_of_val(points))?;
+                Positions::F32(points.to_vec())
+            }
+            HostPoints::Borrowed(Points::F64(points)) => {
+                require(size_of_val(points))?;
+                Positions::F64(points.to_vec())
+            }
+            HostPoints::Copied(positions) => positions,
+        })
+    }
+}
+
 impl NearmissRows {
-    fn number(&self, what: &str) -> Result<Number, Error> {
+    fn number(&self, name: &str) -> Result<Number, Error> {
         match self.number {
             0 => Ok(Number::F32),
             1 => Ok(Number::F64),
             other => Err(refused(
-                format!("numbers of kind {other} for {what}"),
-                "give NEARMISS_F32 or NEARMISS_F64",
+                format!("type of the numbers of {name} is unknown, got {other}"),
+                "choose NEARMISS_F32 or NEARMISS_F64",
             )),
         }
     }
 
-    /// Positions, copied from the host's memory.
+    /// Points in memory of the host.
     ///
     /// # Safety
-    /// Behind a `data` that is not NULL lie three numbers a row for `count` rows.
-    pub(crate) unsafe fn positions(&self, what: &str) -> Result<Positions, Error> {
-        let number = self.number(what)?;
+    /// Behind a `data` that is not NULL are `count` rows of three numbers, and nobody writes them
+    /// while the points live.
+    pub(crate) unsafe fn points<'a>(&self, name: &str) -> Result<HostPoints<'a>, Error> {
+        let number = self.number(name)?;
         let size = number.bytes();
         let stride = if self.stride == 0 { 3 * size } else { self.stride };
         if stride < 3 * size || !stride.is_multiple_of(size) {
             return Err(refused(
-                format!("{what} {stride} bytes apart"),
-                format!("give a multiple of {size} bytes, at least {}, or 0 for no gaps", 3 * size),
+                format!("stride of {name} is no multiple of {size} from {}, got {stride}", 3 * size),
+                "set stride to 0 for rows without gaps",
             ));
         }
-        if self.count == 0 {
-            return Ok(if number == Number::F32 {
-                Positions::F32(Vec::new())
-            } else {
-                Positions::F64(Vec::new())
-            });
+        if self.count > 0 {
+            self.check_host(name, size, stride)?;
         }
-        let bytes = stride.checked_mul(self.count).filter(|bytes| *bytes <= isize::MAX as usize);
-        if bytes.is_none() {
-            return Err(refused(format!("{} rows for {what}", self.count), "give as many as there are"));
+        let has_gaps = stride > 3 * size;
+        if has_gaps {
+            nearmiss::memory::require("positions", (self.count * 3 * size) as u64)?;
         }
-        if self.data.is_null() || !self.data.addr().is_multiple_of(size) {
-            let told = if self.data.is_null() { "NULL" } else { "a pointer between two numbers" };
-            return Err(refused(format!("{told} for {what}"), "give a pointer to the first number"));
-        }
-        nearmiss::memory::require("positions", (self.count * 3 * size) as u64)?;
-        // SAFETY: the caller's promise; not NULL, aligned, and no row is beyond what may be reached.
+        let (data, count, stride) = (self.data, self.count, stride / size);
+        // SAFETY: the caller's promise; not NULL, aligned, and no row is beyond an object's size.
         Ok(unsafe {
-            match number {
-                Number::F32 => Positions::F32(read(self.data.cast(), self.count, stride / size)),
-                Number::F64 => Positions::F64(read(self.data.cast(), self.count, stride / size)),
+            match (number, has_gaps) {
+                (Number::F32, false) => HostPoints::Borrowed(Points::F32(items(data.cast(), count, name)?)),
+                (Number::F64, false) => HostPoints::Borrowed(Points::F64(items(data.cast(), count, name)?)),
+                (Number::F32, true) => HostPoints::Copied(Positions::F32(spaced(data.cast(), count, stride))),
+                (Number::F64, true) => HostPoints::Copied(Positions::F64(spaced(data.cast(), count, stride))),
             }
         })
     }
 
-    /// Rows in the device's memory, of that many numbers each.
+    /// Whether an object of the host may have so many rows there.
+    fn check_host(&self, name: &str, size: usize, stride: usize) -> Result<(), Error> {
+        let bytes = stride.checked_mul(self.count).filter(|bytes| *bytes <= isize::MAX as usize);
+        if bytes.is_none() {
+            let what = format!("count of {name} exceeds the memory, got {}", self.count);
+            return Err(refused(what, "set count to the number of rows"));
+        }
+        if self.data.is_null() {
+            return Err(refused(format!("data of {name} is NULL"), "pass a pointer to the first number"));
+        }
+        if !self.data.addr().is_multiple_of(size) {
+            let what = format!("data of {name} is not aligned to {size} bytes");
+            return Err(refused(what, "pass a pointer to the first number"));
+        }
+        Ok(())
+    }
+
+    /// Rows in memory of the device, of `width` numbers each.
     ///
     /// # Safety
     /// As of [`DeviceRows::new`].
-    pub(crate) unsafe fn on_device(&self, what: &str, width: usize) -> Result<DeviceRows, Error> {
-        let number = self.number(what)?;
+    pub(crate) unsafe fn on_device(&self, name: &str, width: usize) -> Result<DeviceRows, Error> {
+        let number = self.number(name)?;
         if self.data.is_null() && self.count > 0 {
-            return Err(refused(format!("NULL for {what}"), "give the address of the first number"));
+            return Err(refused(format!("data of {name} is NULL"), "pass the address of the first number"));
         }
         let row = width * number.bytes();
         let stride = if self.stride == 0 { row } else { self.stride };
         if stride < row {
             return Err(refused(
-                format!("{what} {stride} bytes apart"),
-                format!("give at least {row}, or 0 for no gaps"),
+                format!("stride of {name} is less than {row}, got {stride}"),
+                "set stride to 0 for rows without gaps",
             ));
         }
         // SAFETY: the caller's promise.
@@ -119,29 +163,36 @@ impl NearmissRows {
 /// Rows of three, `stride` numbers apart.
 ///
 /// # Safety
-/// All that lies there, aligned.
-unsafe fn read<T: Copy>(from: *const T, count: usize, stride: usize) -> Vec<[T; 3]> {
+/// All of them are there, aligned.
+unsafe fn spaced<T: Copy>(from: *const T, count: usize, stride: usize) -> Vec<[T; 3]> {
     // SAFETY: the caller's promise. An array has the alignment of its elements.
     (0..count).map(|row| unsafe { from.add(row * stride).cast::<[T; 3]>().read() }).collect()
 }
 
-/// So many items of the caller.
+/// Items of the caller.
 ///
 /// # Safety
-/// They lie behind a pointer that is not NULL, and nobody writes them while the slice lives.
-pub(crate) unsafe fn items<'a, T>(from: *const T, count: usize, what: &str) -> Result<&'a [T], Error> {
+/// `count` of them are behind a pointer that is not NULL, and nobody writes them while the slice
+/// lives.
+pub(crate) unsafe fn items<'a, T>(from: *const T, count: usize, name: &str) -> Result<&'a [T], Error> {
     if count == 0 {
         return Ok(&[]);
     }
-    if from.is_null() || !from.is_aligned() || count > isize::MAX as usize / size_of::<T>().max(1) {
-        let told = if from.is_null() { "NULL" } else { "a pointer or a count that cannot be" };
-        return Err(refused(format!("{told} for {count} {what}"), "give a pointer to the first of them"));
+    if from.is_null() {
+        return Err(refused(
+            format!("{name} is NULL, and its count is {count}"),
+            "pass a pointer to the first",
+        ));
+    }
+    if !from.is_aligned() || count > isize::MAX as usize / size_of::<T>().max(1) {
+        let what = format!("{name} is not aligned or exceeds the memory, got a count of {count}");
+        return Err(refused(what, "pass a pointer to the first, and their number"));
     }
     // SAFETY: the caller's promise; not NULL, aligned, of a possible size.
     Ok(unsafe { std::slice::from_raw_parts(from, count) })
 }
 
-/// A text of the caller, if there is one; what is not UTF-8 is replaced.
+/// A text of the caller, if there is one; invalid UTF-8 is replaced.
 ///
 /// # Safety
 /// A pointer that is not NULL points to a text that ends with a zero.

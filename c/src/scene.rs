@@ -1,40 +1,38 @@
-//! Which bodies there are.
+//! The bodies of a detector.
 
 use crate::body::NearmissBody;
 use crate::error::{NearmissCode, NearmissError, call, free, given, make, refused};
 use nearmiss::Scene;
-use nearmiss::scene::BodyId;
 use std::mem::MaybeUninit;
 use std::sync::atomic::AtomicBool;
 
 /// Bodies, by their numbers.
 pub struct NearmissScene {
     pub(crate) scene: Scene,
-    /// The library's name of each number.
-    pub(crate) ids: Vec<BodyId>,
-    /// Whether a detector has taken a copy.
-    pub(crate) taken: AtomicBool,
+    /// Whether a detector has a copy.
+    pub(crate) is_copied: AtomicBool,
 }
 
 /// A scene without bodies.
 #[unsafe(no_mangle)]
-pub extern "C" fn nearmiss_scene_new(
+pub extern "C" fn nearmiss_scene_create(
     scene: Option<&mut MaybeUninit<*mut NearmissScene>>,
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
-    make(scene, "the scene", error, || {
-        Ok(NearmissScene { scene: Scene::new(), ids: Vec::new(), taken: AtomicBool::new(false) })
+    make(scene, "scene", error, || {
+        Ok(NearmissScene { scene: Scene::new(), is_copied: AtomicBool::new(false) })
     })
 }
 
-/// Adds a body and tells its number: they are counted from 0. `id` may be NULL. Cost: a copy of the mesh, and a pass over it.
+/// Adds a body and writes its number to `id`, which may be NULL. Numbers count from 0. Cost: a copy
+/// of the mesh, and a pass over it.
 ///
-/// Fails with `NEARMISS_INPUT` for positions that are not finite or too large, and for indices out of range, naming the first; with
-/// `NEARMISS_INVALID_ARGUMENT` for a body that cannot be, and for a scene of which a detector has a copy.
-/// Then nothing is added.
+/// Fails with `NEARMISS_INPUT` for positions that are not finite or too large and for indices out
+/// of range, naming the first. Fails with `NEARMISS_INVALID_ARGUMENT` for a field without a
+/// meaning, and for a scene of which a detector has a copy. Then nothing is added.
 ///
 /// # Safety
-/// What the body points to is there.
+/// Memory that the body points to is there.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nearmiss_scene_add(
     scene: Option<&mut NearmissScene>,
@@ -43,15 +41,14 @@ pub unsafe extern "C" fn nearmiss_scene_add(
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
     call(error, || {
-        let scene = given(scene, "the scene")?;
-        if *scene.taken.get_mut() {
-            let what = "adding to a scene of which a detector has a copy, which would not change";
-            return Err(refused(what, "add to the detector, or make another scene"));
+        let scene = given(scene, "scene")?;
+        if *scene.is_copied.get_mut() {
+            let what = "scene was copied by a detector, which would not see the body";
+            return Err(refused(what, "call nearmiss_detector_add, or make another scene"));
         }
         // SAFETY: the caller's promise.
-        let body = unsafe { given(body, "the body")?.body() }?;
+        let body = unsafe { given(body, "body")?.body() }?;
         let added = scene.scene.add(body);
-        scene.ids.push(added);
         if let Some(id) = id {
             id.write(added.index() as u32);
         }
@@ -59,7 +56,7 @@ pub unsafe extern "C" fn nearmiss_scene_add(
     })
 }
 
-/// Frees the scene. Detectors have their own.
+/// Frees the scene. Detectors keep their copies.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_scene_free(scene: Option<Box<NearmissScene>>) {
     free(scene);

@@ -1,34 +1,51 @@
-//! Frames that are submitted and not waited for.
+//! Submissions that the host does not wait for.
 
 use crate::answer::NearmissAnswer;
 use crate::detector::NearmissDetector;
 use crate::error::{NearmissCode, NearmissError, given};
-use crate::input::NearmissInput;
+use crate::motion::NearmissMotion;
+use crate::query::NearmissQuery;
+use crate::rows::items;
+use nearmiss::{Error, Query};
 use std::mem::MaybeUninit;
 
-/// Prepares frames that the host does not wait for: says where on the device bodies will be found (`on_device` of each input is 1), answers
-/// the frame that is there now, and takes all memory. Then `nearmiss_detector_submit` takes no memory and waits for nothing. Bodies that are
-/// not named rest. Any other call that changes the detector ends it.
+/// Prepares submissions of several queries. Each motion is in memory of the device (`on_device` is
+/// 1); write new positions there between submissions. Bodies that are not named rest. The call
+/// runs the queries and takes all memory. `nearmiss_detector_submit` then allocates nothing and
+/// waits for nothing. Any other call that changes the detector ends the preparation.
+///
+/// Fails with `NEARMISS_INVALID_ARGUMENT` for no query, and for two queries that differ in numbers
+/// alone.
 ///
 /// # Safety
-/// So many inputs are there; what they point to stays, and is written between frames alone, until another input or the end of the detector.
+/// So many motions and queries are there. Memory of the motions stays until the next update or the
+/// end of the detector. The names of the queries are texts or NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn nearmiss_detector_prepare(
     detector: Option<&mut NearmissDetector>,
-    inputs: *const NearmissInput,
-    count: usize,
-    answer: Option<&mut MaybeUninit<*mut NearmissAnswer>>,
+    motions: *const NearmissMotion,
+    motion_count: usize,
+    queries: *const NearmissQuery,
+    query_count: usize,
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
-    NearmissDetector::asked(detector, answer, error, |own| {
+    NearmissDetector::work(detector, error, |own| {
+        // SAFETY: the caller's promise.
+        let queries = unsafe { items(queries, query_count, "queries") }?;
+        // SAFETY: the caller's promise.
+        let queries = queries.iter().map(|query| unsafe { query.query() });
+        let queries = queries.collect::<Result<Vec<Query>, Error>>()?;
         // SAFETY: the caller's promise, twice.
-        let inputs = unsafe { own.inputs(inputs, count, |input| input.on_device()) }?;
-        own.detector.prepare(&inputs, &[own.query])?;
-        own.detector.collect(&own.query)
+        let motions = unsafe { own.motions(motions, motion_count, |motion| motion.device_motion()) }?;
+        (own.prepared, own.starts) = (Vec::new(), Vec::new());
+        own.detector.prepare(&motions, &queries)?;
+        own.prepared = queries;
+        Ok(())
     })
 }
 
-/// Whether frames may be submitted, and what was recorded of one run again: it was prepared, and nothing has changed since.
+/// Whether the detector is prepared: `nearmiss_detector_submit` may be called, and a recording of
+/// it may be launched again. Nothing has changed the detector since `nearmiss_detector_prepare`.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_detector_is_prepared(
     detector: Option<&mut NearmissDetector>,
@@ -36,13 +53,14 @@ pub extern "C" fn nearmiss_detector_is_prepared(
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
     NearmissDetector::work(detector, error, |own| {
-        given(is_prepared, "whether it is prepared")?.write(own.detector.is_prepared());
+        given(is_prepared, "is_prepared")?.write(own.detector.is_prepared());
         Ok(())
     })
 }
 
-/// Submits a frame to the device's stream, with bodies where their memory says when its turn comes: launches alone, so it may be called while
-/// that stream is captured, and the graph launched as often as wanted. On a CPU it is done when this returns.
+/// Submits the prepared queries to the stream of the device. Positions are read there when its turn
+/// comes. The call launches kernels and does nothing else, so a CUDA graph may capture it and be
+/// launched any number of times. On a CPU the work is done when the call returns.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_detector_submit(
     detector: Option<&mut NearmissDetector>,
@@ -51,13 +69,23 @@ pub extern "C" fn nearmiss_detector_submit(
     NearmissDetector::work(detector, error, |own| own.detector.submit())
 }
 
-/// Waits for what was submitted last, or recorded and launched again, and brings the answer. Where a list had too little room it grows and the
-/// frame is asked again: the answer is whole, and the detector no longer prepared.
+/// Waits for the last submission, or for the last launch of its recording, and copies the answer to
+/// one of its queries. If a list was too short it grows and the query runs again: the answer is
+/// whole, and the detector is no longer prepared. A query that was not prepared with these numbers
+/// runs too, with the bodies where they are.
+///
+/// # Safety
+/// The names of the query are texts or NULL.
 #[unsafe(no_mangle)]
-pub extern "C" fn nearmiss_detector_collect(
+pub unsafe extern "C" fn nearmiss_detector_collect(
     detector: Option<&mut NearmissDetector>,
+    query: Option<&NearmissQuery>,
     answer: Option<&mut MaybeUninit<*mut NearmissAnswer>>,
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
-    NearmissDetector::asked(detector, answer, error, |own| own.detector.collect(&own.query))
+    NearmissDetector::answer(detector, answer, error, |own| {
+        // SAFETY: the caller's promise.
+        let query = unsafe { given(query, "query")?.query() }?;
+        own.detector.collect(&query)
+    })
 }

@@ -1,5 +1,5 @@
-//! The committed header is what the sources say. `NEARMISS_BLESS=1 cargo test -p nearmiss-c --test header` writes it anew.
-//! `c/abi.txt` lists what the header lays out; it changes with `NEARMISS_ABI` alone.
+//! The committed header is made from the sources: `NEARMISS_BLESS=1 cargo test -p nearmiss-c --test header`
+//! writes it. `c/abi.txt` lists the layout of the header. It changes with `NEARMISS_ABI` alone.
 
 mod layout;
 
@@ -56,7 +56,7 @@ fn a_changed_layout_without_a_new_number_is_named() {
         // A field more.
         ("    uint64_t slices;", "    uint64_t slices;\n    uint64_t more;", "struct NearmissSummary size"),
         // A field of another name.
-        ("    uint32_t a;", "    uint32_t z;", "field NearmissContact.a offset"),
+        ("    uint32_t feature_a;", "    uint32_t z;", "field NearmissContact.feature_a offset"),
         // A wider type.
         ("    uint32_t length;", "    uint64_t length;", "struct NearmissError size"),
         // A longer array.
@@ -76,6 +76,74 @@ fn a_changed_layout_without_a_new_number_is_named() {
         let raised = other.replace(&number, &format!("#define NEARMISS_ABI {}", NEARMISS_ABI + 1));
         assert_eq!(compared(&Layout::of(&raised), &committed), Ok(()), "{to}, with a new number");
     }
+}
+
+/// Names of earlier headers.
+const OLD: [&str; 38] = [
+    "NEARMISS_INVALID_ARGUMENT",
+    "NEARMISS_STAMP",
+    "NEARMISS_FIXED",
+    "NEARMISS_FV",
+    "NEARMISS_CONTACT,",
+    "NEARMISS_CONTACT ",
+    "NEARMISS_UNDECIDED",
+    "NEARMISS_SELF_COLLISION",
+    "NEARMISS_AT",
+    "NEARMISS_POSES",
+    "NearmissSelfCollision",
+    "NearmissInput",
+    "nearmiss_detector_new",
+    "nearmiss_detector_frame",
+    "nearmiss_detector_place",
+    "nearmiss_detector_detect",
+    "nearmiss_scene_new",
+    "nearmiss_interrupt_new",
+    "nearmiss_device_from_stream",
+    "nearmiss_device_interruptible",
+    "nearmiss_device_limit",
+    "nearmiss_answer_caveats",
+    "nearmiss_at(",
+    "nearmiss_step(",
+    "nearmiss_pose(",
+    "nearmiss_poses(",
+    "self_collision",
+    "toi_upper",
+    " a;",
+    " b;",
+    " first[",
+    "undecided",
+    "caveats",
+    " separation;",
+    " budget",
+    " bv;",
+    " broad;",
+    "inputs",
+];
+
+fn old_name(header: &str) -> Option<&'static str> {
+    OLD.into_iter().find(|old| header.contains(old))
+}
+
+#[test]
+fn no_name_of_an_earlier_header_is_left() {
+    let header = made();
+    assert_eq!(old_name(&header), None);
+    for old in OLD {
+        assert_eq!(old_name(&format!("{header}{old}")), Some(old), "planted");
+    }
+}
+
+/// The first line that is wider than 100 columns.
+fn wide_line(header: &str) -> Option<&str> {
+    header.lines().find(|line| line.starts_with(['/', ' ']) && line.chars().count() > 100)
+}
+
+#[test]
+fn comments_have_at_most_100_columns() {
+    let header = made();
+    assert_eq!(wide_line(&header), None);
+    let planted = header.replace("// Success.", &format!("// Success{}.", " and more".repeat(12)));
+    assert!(wide_line(&planted).is_some_and(|line| line.contains("and more")));
 }
 
 /// The sizes that the list was computed with are those of the compiler.
@@ -104,15 +172,17 @@ fn the_compiler_lays_out_the_same() {
         NearmissError,
         NearmissFrameStatus,
         NearmissGeometry,
-        NearmissInput,
-        NearmissInputKind,
         NearmissKind,
+        NearmissMotion,
+        NearmissMotionKind,
         NearmissNearPair,
         NearmissNearest,
         NearmissNumber,
         NearmissPose,
         NearmissQuery,
         NearmissQueryKind,
+        NearmissRebuild,
+        NearmissResearch,
         NearmissRows,
         NearmissSelfCollision,
         NearmissStages,

@@ -17,7 +17,7 @@ pub struct ContactGeometry {
     /// Bodies of both features, as in the row.
     pub bodies: [BodyId; 2],
     /// Body of each vertex.
-    pub owners: [BodyId; 4],
+    pub owner: [BodyId; 4],
     /// Indices of the vertices in their bodies.
     pub vertices: [u32; 4],
     /// Weight of each vertex in the nearest point of its feature, at least 0. The weights of each
@@ -106,10 +106,10 @@ impl ContactGeometry {
         ContactGeometry {
             kind: named.kind,
             bodies: named.bodies,
-            owners: [0, 1, 2, 3].map(|at| named.bodies[usize::from(at >= first)]),
+            owner: [0, 1, 2, 3].map(|at| named.bodies[usize::from(at >= first)]),
             vertices,
             weights,
-            signed_weights: [0, 1, 2, 3].map(|at| if at < first { weights[at] } else { -weights[at] }),
+            signed_weights: [0, 1, 2, 3].map(|at| if at < first { weights[at] } else { 0.0 - weights[at] }),
             points: [point(&now, 0..first).0, point(&now, first..4).0],
             distance: length(apart),
             normal: unit(normal).0,

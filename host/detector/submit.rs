@@ -138,7 +138,16 @@ impl Detector {
         start_threads()?;
         self.engine.answered = None;
         self.read_again(true);
-        let submitted = self.engine.pipeline.as_mut().map_or(Ok(()), |pipeline| pipeline.submit());
+        let may_meet = self.may_meet();
+        let submitted = match &mut self.engine.pipeline {
+            Some(pipeline) => pipeline.submit(),
+            None if may_meet => Err(Error::InvalidArgument {
+                what: "a submission that is not prepared".into(),
+                advice: "call `prepare` first, and again after every other call that changes the detector"
+                    .into(),
+            }),
+            None => Ok(()),
+        };
         self.ended(submitted)
     }
 
@@ -165,7 +174,8 @@ impl Detector {
         let question = self.question(query)?;
         let layout = self.layout(&query)?;
         self.read_again(true);
-        let Some(pipeline) = &mut self.engine.pipeline else { return Ok(Contacts::none(query)) };
+        // Nothing was submitted, or its memory is gone after an interrupted call: the query runs.
+        let Some(pipeline) = &mut self.engine.pipeline else { return self.answer(&question, start) };
         let place = pipeline.place_of(&query).filter(|_| self.placed.answers(&query));
         let found = place.map_or(Ok(None), |at| pipeline.collect(at))?;
         let whole = found.map(|found| {

@@ -34,7 +34,7 @@ impl Geometry {
     /// (k, 4) uint32: the body of each vertex.
     #[getter]
     fn owner<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let owners = || self.column(|at| at.owners.map(|body| body.index() as u32));
+        let owners = || self.column(|at| at.owner.map(|body| body.index() as u32));
         self.columns.get(py, "owner", || Ok(rows(py, &owners())))
     }
 

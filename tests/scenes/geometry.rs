@@ -64,8 +64,8 @@ fn fault(
         Kind::Ee => 2,
     };
     let owner = |i: usize| bodies[usize::from(i >= first)];
-    if told.owners != [0, 1, 2, 3].map(owner) || told.bodies != bodies {
-        return Some(format!("owners {:?} of {:?}", told.owners, told.bodies));
+    if told.owner != [0, 1, 2, 3].map(owner) || told.bodies != bodies {
+        return Some(format!("owners {:?} of {:?}", told.owner, told.bodies));
     }
     let faces = |body: BodyId, face: u32| detector.scene().bodies()[body.index()].faces()[face as usize];
     let named = match kind {
@@ -87,7 +87,7 @@ fn fault(
     if sums.iter().any(|sum| (sum - 1.0).abs() > 1e-12) || told.weights.iter().any(|w| *w < 0.0) {
         return Some(format!("weights {:?}", told.weights));
     }
-    let signed = |i: usize| if i < first { told.weights[i] } else { -told.weights[i] };
+    let signed = |i: usize| if i < first { told.weights[i] } else { 0.0 - told.weights[i] };
     if told.signed_weights.map(f64::to_bits) != [0, 1, 2, 3].map(signed).map(f64::to_bits) {
         return Some(format!("signed weights {:?} of {:?}", told.signed_weights, told.weights));
     }
@@ -161,7 +161,7 @@ fn a_wrong_geometry_is_noticed() {
         .expect("a contact");
     let names = (contact.kind, contact.bodies, [contact.feature_a, contact.feature_b]);
     let faults: [(Plant, &str); 8] = [
-        (|g| g.owners[0] = g.owners[1], "owners"),
+        (|g| g.owner[0] = g.owner[1], "owners"),
         (|g| g.signed_weights[1] *= -1.0, "signed weights"),
         (|g| g.vertices.swap(1, 2), "vertices ["),
         (|g| g.weights[1] += 1e-3, "weights"),

@@ -285,3 +285,21 @@ fn a_submission_has_the_numbers_that_it_was_prepared_with() {
     assert_eq!(found.rows, alone(&large).rows);
     assert_ne!(found.rows, alone(&small).rows);
 }
+
+/// Without a submission, and after an interrupted call, a collection answers as a query does.
+#[test]
+fn a_collection_without_a_submission_misses_nothing() {
+    let body = Body::deformable(cloth().frames().swap_remove(0));
+    let query = Query::near(1e-3);
+    let wanted = Detector::new(engine(), body.clone()).expect("a detector").query(&query).expect("an answer");
+    assert!(!wanted.rows.is_empty());
+    let mut detector = Detector::new(engine(), body).expect("a detector");
+    assert!(detector.submit().expect_err("refused").to_string().contains("not prepared"));
+    assert_eq!(detector.collect(&query).expect("an answer").rows, wanted.rows);
+    detector.prepare(&[], &[query]).expect("prepared");
+    detector.submit().expect("submitted");
+    detector.interrupter().trigger();
+    detector.query(&Query::near(2e-3)).expect_err("interrupted");
+    assert_eq!(detector.collect(&query).expect("an answer").rows, wanted.rows);
+    assert!(!detector.is_prepared() && detector.submit().is_err());
+}

@@ -1,9 +1,9 @@
-//! Every query, asked through the interface and of the library itself.
+//! Every query, through the interface and by the library itself.
 
 use super::*;
 use nearmiss::contacts::Kind;
 use nearmiss::device::Backend;
-use nearmiss::scene::{CollisionFilter, Motion, Pose, Scene};
+use nearmiss::scene::{BodyId, CollisionFilter, Motion, Pose, Scene};
 use nearmiss::{Contacts, Detector, Device, Mesh, Query};
 use nearmiss_lab::scene::soup;
 
@@ -30,15 +30,14 @@ fn answers_are_the_librarys() {
         [Query::discrete(), Query::continuous(), Query::earliest(), Query::near(0.01), Query::distance()];
     for (number, query) in queries.into_iter().enumerate() {
         let (mut by_library, found) = library(query, &of, &other, poses);
-        let mut asked = nearmiss_query(number as u32);
-        asked.distance = if number == 3 { 0.01 } else { 0.0 };
+        let asked = if number == 3 { near(0.01) } else { nearmiss_query(number as u32) };
         let bodies = [described(&of), NearmissBody { kind: 1, ..described(&other) }];
-        let mut detector = detector(&bodies, asked).expect("a detector");
+        let mut detector = detector(&bodies);
         let [t0, t1] = of.ends().map(rows);
-        let [from, to] = poses.map(|Pose { rotation, translation }| NearmissPose { rotation, translation });
-        let inputs = [nearmiss_step(0, t0, t1), nearmiss_poses(1, from, to)];
-        let mut answer = frame(&mut detector, &inputs).expect("an answer");
-        let summary = got(|to, error| nearmiss_answer_summary(Some(&answer), to, error)).expect("figures");
+        let [start, end] = poses.map(|Pose { rotation, translation }| NearmissPose { rotation, translation });
+        let motions = [nearmiss_motion_step(0, t0, t1), nearmiss_motion_pose_step(1, start, end)];
+        let mut answer = step(&mut detector, &motions, &asked).expect("an answer");
+        let summary = summary(&answer);
         assert_eq!((summary.hash, summary.contacts), (found.hash(), found.len() as u64));
         assert_eq!((summary.candidates, summary.undecided), (found.stats.candidates, found.undecided));
         let crossing = summary.is_start_checked.then_some(summary.starts_crossing);
@@ -57,13 +56,14 @@ fn answers_are_the_librarys() {
         }
         assert!(got(|to, error| nearmiss_answer_note(Some(&answer), notes.len(), to, error)).is_err());
         assert!(!found.is_empty() && summary.bytes > 0 && summary.slices == 1 && summary.ms.total > 0.0);
+        assert_eq!(summary.caveats as usize, found.caveats().len());
         for index in 0..summary.caveats as usize {
-            got(|to, error| nearmiss_answer_caveats(Some(&answer), index, to, error)).expect("a sentence");
+            got(|to, error| nearmiss_answer_caveat(Some(&answer), index, to, error)).expect("a sentence");
         }
         let pairs = list(|to, n, error| nearmiss_answer_triangle_pairs(Some(&answer), to, n, error));
         let contacts = list(|to, n, error| nearmiss_answer_contacts(Some(&answer), to, n, error));
-        let near = list(|to, n, error| nearmiss_answer_near_pairs(Some(&answer), to, n, error));
-        let has = [pairs.is_ok(), contacts.is_ok(), near.is_ok()];
+        let near_rows = list(|to, n, error| nearmiss_answer_near_pairs(Some(&answer), to, n, error));
+        let has = [pairs.is_ok(), contacts.is_ok(), near_rows.is_ok()];
         assert_eq!(has, [number == 0, number == 1, number == 3]);
         for (c, own) in pairs.iter().flat_map(|all| all.iter()).zip(found.pairs()) {
             assert_eq!(
@@ -72,19 +72,17 @@ fn answers_are_the_librarys() {
             );
         }
         for (c, own) in contacts.iter().flat_map(|all| all.iter()).zip(found.contacts()) {
-            assert_eq!(
-                (c.a, c.b, c.toi, c.toi_upper),
-                (own.feature_a, own.feature_b, own.toi, own.toi_upper)
-            );
-            assert_eq!((c.kind as u32, c.status as u32), (own.kind as u32, own.status as u32));
-            assert_eq!(c.bodies.map(|b| b as usize), own.bodies.map(|b| b.index()));
+            let features = [(c.bodies[0], c.feature_a), (c.bodies[1], c.feature_b)];
+            assert_eq!(features, features_of(own.bodies, [own.feature_a, own.feature_b]));
+            assert_eq!((c.toi, c.toi_upper, c.status as u32), (own.toi, own.toi_upper, own.status as u32));
+            assert_eq!(c.kind == NearmissKind::NEARMISS_EE, own.kind == Kind::Ee);
         }
-        for (c, own) in near.iter().flat_map(|all| all.iter()).zip(found.near()) {
-            assert_eq!(
-                (c.a, c.b, c.squared_distance, c.weights),
-                (own.feature_a, own.feature_b, own.squared_distance, own.weights)
-            );
-            assert_eq!((c.kind as u32, c.closest as u32), (own.kind as u32, own.closest as u32));
+        for (c, own) in near_rows.iter().flat_map(|all| all.iter()).zip(found.near()) {
+            let features = [(c.bodies[0], c.feature_a), (c.bodies[1], c.feature_b)];
+            assert_eq!(features, features_of(own.bodies, [own.feature_a, own.feature_b]));
+            assert_eq!(c.squared_distance, own.squared_distance);
+            assert_eq!(c.kind == NearmissKind::NEARMISS_EE, own.kind == Kind::Ee);
+            assert_eq!(c.closest as u32, own.closest as u32);
         }
         let mut toi = MaybeUninit::new(-1.0);
         let earliest =
@@ -113,16 +111,97 @@ fn answers_are_the_librarys() {
         let wanted = by_library.geometry(&found);
         assert_eq!(wanted.is_ok(), shown.is_ok());
         for (c, own) in shown.iter().flat_map(|all| all.iter()).zip(wanted.iter().flatten()) {
-            assert_eq!((c.vertices, c.weights, c.points), (own.vertices, own.weights, own.points));
-            assert_eq!(
-                (c.signed_weights, c.distance, c.normal),
-                (own.signed_weights, own.distance, own.normal)
-            );
+            assert_eq!(c.distance, own.distance);
+        }
+        let all: Vec<Row> = match number {
+            1 => contacts.expect("contacts").iter().map(Row::from).collect(),
+            3 => near_rows.expect("near pairs").iter().map(Row::from).collect(),
+            _ => Vec::new(),
+        };
+        let at = all.iter().map(|row| row.time).map(|time| places(&of, &other, poses, time));
+        for ((row, at), geometry) in all.iter().zip(at).zip(shown.unwrap_or_default()) {
+            assert_eq!(fault(row, geometry, [of.faces(), other.faces()], &at), None);
+            let mut planted = *geometry;
+            planted.owner[3] = 1 - planted.owner[3];
+            assert!(fault(row, &planted, [of.faces(), other.faces()], &at).is_some());
         }
         nearmiss_answer_free(Some(answer));
         nearmiss_detector_free(Some(detector));
     }
-    assert_eq!([Kind::Vf as u32, Kind::Ee as u32], [0, 1]);
+}
+
+/// Body and index of both features of a row of the library.
+fn features_of(bodies: [BodyId; 2], features: [u32; 2]) -> [(u32, u32); 2] {
+    [0, 1].map(|k| (bodies[k].index() as u32, features[k]))
+}
+
+/// A row of features.
+struct Row {
+    kind: NearmissKind,
+    bodies: [u32; 2],
+    features: [u32; 2],
+    weights: Option<[f64; 4]>,
+    time: f64,
+}
+
+impl From<&NearmissContact> for Row {
+    fn from(row: &NearmissContact) -> Row {
+        let features = [row.feature_a, row.feature_b];
+        Row { kind: row.kind, bodies: row.bodies, features, weights: None, time: row.toi }
+    }
+}
+
+impl From<&NearmissNearPair> for Row {
+    fn from(row: &NearmissNearPair) -> Row {
+        let features = [row.feature_a, row.feature_b];
+        Row { kind: row.kind, bodies: row.bodies, features, weights: Some(row.weights), time: 0.0 }
+    }
+}
+
+/// Vertices of both bodies at a time of the step.
+fn places(of: &Body, other: &Body, poses: [Pose; 2], time: f64) -> [Vec<[f64; 3]>; 2] {
+    let between = |start: &[[f64; 3]], end: &[[f64; 3]]| {
+        let point = |(a, b): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|k| a[k] + time * (b[k] - a[k]));
+        start.iter().zip(end).map(point).collect::<Vec<_>>()
+    };
+    let [start, end] = of.ends().map(Positions::to_f64);
+    let mesh = other.positions_t0().to_f64();
+    let [from, to] = poses.map(|pose| mesh.iter().map(|point| pose.apply(*point)).collect::<Vec<[f64; 3]>>());
+    [between(&start, &end), between(&from, &to)]
+}
+
+/// A contradiction between a row, its geometry and the meshes.
+fn fault(
+    row: &Row,
+    geometry: &NearmissGeometry,
+    faces: [&[[u32; 3]]; 2],
+    at: &[Vec<[f64; 3]>; 2],
+) -> Option<String> {
+    let is_vf = row.kind == NearmissKind::NEARMISS_VF;
+    let count_a = if is_vf { 1 } else { 2 };
+    let owner = [0, 1, 2, 3].map(|k| row.bodies[usize::from(k >= count_a)]);
+    if geometry.owner != owner {
+        return Some(format!("owners {:?} of bodies {:?}", geometry.owner, row.bodies));
+    }
+    let [vertex, corners @ ..] = geometry.vertices;
+    let face = || faces[row.bodies[1] as usize][row.features[1] as usize];
+    if is_vf && (vertex != row.features[0] || corners != face()) {
+        return Some(format!("vertices {:?} of features {:?}", geometry.vertices, row.features));
+    }
+    let near = |a: [f64; 3], b: [f64; 3]| (0..3).all(|k| (a[k] - b[k]).abs() < 1e-6);
+    let sum = |weights: &[f64; 4], range: std::ops::Range<usize>| {
+        let part = |k: usize| at[geometry.owner[k] as usize][geometry.vertices[k] as usize];
+        range.fold([0.0; 3], |all, k| [0, 1, 2].map(|i| all[i] + weights[k] * part(k)[i]))
+    };
+    let weights = row.weights.unwrap_or(geometry.weights);
+    let points = [sum(&weights, 0..count_a), sum(&weights, count_a..4)];
+    let gap = [0, 1, 2].map(|i| points[0][i] - points[1][i]);
+    let ends = [0, 1].map(|k| near(points[k], geometry.points[k]));
+    if ends != [true; 2] || !near(gap, sum(&geometry.signed_weights, 0..4)) {
+        return Some(format!("points {points:?}, not {:?}", geometry.points));
+    }
+    let away: f64 = (0..3).map(|i| gap[i] * geometry.normal[i]).sum();
+    (away < -1e-9).then(|| format!("a normal {:?} towards feature b", geometry.normal))
 }
 
 /// What crosses at the start has no time of contact, and is not free; the notes say so.
@@ -141,11 +220,10 @@ fn what_crosses_at_the_start_is_counted() {
     let of = nearmiss::Body::deformable(mesh);
     for kind in [1, 2] {
         for assume_free in [0, 1] {
-            let query = NearmissQuery { assume_free, ..nearmiss_query(kind) };
-            let mut detector = detector(&[described(&of)], query).expect("a detector");
-            let mut answer = own(got(|to, error| nearmiss_detector_detect(Some(&mut detector), to, error)));
-            let summary =
-                got(|to, error| nearmiss_answer_summary(Some(&answer), to, error)).expect("figures");
+            let asked = NearmissQuery { assume_free, ..nearmiss_query(kind) };
+            let mut detector = detector(&[described(&of)]);
+            let mut answer = query(&mut detector, &asked).expect("an answer");
+            let summary = summary(&answer);
             assert_eq!((summary.contacts, summary.is_start_checked), (0, assume_free == 0));
             assert_eq!(summary.starts_crossing, u64::from(assume_free == 0));
             let is_free = got(|to, error| nearmiss_answer_is_free(Some(&answer), to, error));
@@ -157,8 +235,8 @@ fn what_crosses_at_the_start_is_counted() {
     }
     for kind in [0, 3, 4] {
         let distance = if kind == 3 { 1.0 } else { 0.0 };
-        let query = NearmissQuery { assume_free: 1, distance, ..nearmiss_query(kind) };
-        assert!(detector(&[described(&of)], query).is_err(), "it would do nothing");
+        let asked = NearmissQuery { assume_free: 1, distance, ..nearmiss_query(kind) };
+        assert!(query(&mut detector(&[described(&of)]), &asked).is_err(), "it would do nothing");
     }
 }
 
@@ -171,18 +249,22 @@ fn strides_and_doubles_are_read() {
     let wide = NearmissRows { stride: 40, ..nearmiss_doubles(spaced.as_ptr(), points.len()) };
     let hash = |positions| {
         let body = NearmissBody { positions, ..described(&of) };
-        let mut detector = detector(&[body], nearmiss_query(0)).expect("a detector");
-        let answer = own(got(|to, error| nearmiss_detector_detect(Some(&mut detector), to, error)));
-        got(|to, error| nearmiss_answer_summary(Some(&answer), to, error)).expect("figures").hash
+        let mut detector = detector(&[body]);
+        let made = query(&mut detector, &nearmiss_query(0)).expect("an answer");
+        let moved = nearmiss_motion_positions(0, positions);
+        let again = step(&mut detector, &[moved], &nearmiss_query(0)).expect("an answer");
+        [summary(&made).hash, summary(&again).hash]
     };
-    assert_eq!(hash(wide), hash(rows(of.positions_t0())));
+    let [made, again] = hash(wide);
+    assert_eq!(made, again);
+    assert_eq!([made, again], hash(rows(of.positions_t0())));
 }
 
 /// Bodies come, change and go, under their numbers.
 #[test]
 fn bodies_come_and_go() {
     let (of, other) = (soup(60, 4, false).expect("a soup"), soup(60, 5, false).expect("a soup"));
-    let mut detector = detector(&[described(&of)], nearmiss_query(0)).expect("a detector");
+    let mut detector = detector(&[described(&of)]);
     let body = described(&other);
     let add = |own: &mut NearmissDetector| {
         // SAFETY: the soup lives to the end of the test; so below.
@@ -204,43 +286,40 @@ fn bodies_come_and_go() {
     };
     assert_eq!(replace(&mut detector, 1), Ok(()));
     assert!(replace(&mut detector, 2).is_err());
-    assert!(frame(&mut detector, &[]).is_ok());
+    assert!(query(&mut detector, &nearmiss_query(0)).is_ok());
 }
 
 /// The plan is the library's, as a text.
 #[test]
 fn plans_are_told_as_json() {
     let of = soup(60, 4, false).expect("a soup");
-    let mut detector = detector(&[described(&of)], nearmiss_query(0)).expect("a detector");
-    let text = got(|to, error| nearmiss_detector_plan(Some(&mut detector), to, error)).expect("a plan");
-    // SAFETY: it lives until it is asked again, and ends with a zero.
+    let mut detector = detector(&[described(&of)]);
+    let discrete = nearmiss_query(0);
+    // SAFETY: names are NULL.
+    let text = got(|to, e| unsafe { nearmiss_detector_plan(Some(&mut detector), Some(&discrete), to, e) });
+    let text = text.expect("a plan");
+    // SAFETY: it lives until the next plan, and ends with a zero.
     let text = unsafe { std::ffi::CStr::from_ptr(text) }.to_str().expect("UTF-8");
     let plan: serde_json::Value = serde_json::from_str(text).expect("JSON");
     assert_eq!(plan["bodies"]["deformable"], serde_json::json!([1, 60]));
     assert!(["build", "frame", "buffers", "transfers"].iter().all(|what| plan[what].is_array()), "{text}");
 }
 
-/// What the header says of threads: a device tells its name and takes a limit while another thread works with its detectors, and may end.
+/// By the header, a device has its name and takes a limit while another thread works with its detectors, and may be freed.
 #[test]
-fn a_device_is_asked_beside_its_detectors() {
+fn a_device_is_used_beside_its_detectors() {
     let soup = soup(60, 1, false).expect("a soup");
     let (device, scene) = (device(), scene(&[described(&soup)]));
-    // SAFETY: names are NULL.
-    let mut own = own(got(|made, error| unsafe {
-        nearmiss_detector_new(Some(&device), Some(&scene), Some(&nearmiss_query(0)), made, error)
-    }));
+    let made = got(|made, error| nearmiss_detector_create(Some(&device), Some(&scene), made, error));
+    let mut own = own(made);
     let works = std::thread::spawn(move || {
-        let hash = |answer: Box<NearmissAnswer>| {
-            got(|to, e| nearmiss_answer_summary(Some(&answer), to, e)).map(|s| s.hash)
-        };
-        (0..200)
-            .map(|_| hash(frame(&mut own, &[]).expect("an answer")).expect("a summary"))
-            .collect::<Vec<_>>()
+        let hash = |_| summary(&query(&mut own, &nearmiss_query(0)).expect("an answer")).hash;
+        (0..200).map(hash).collect::<Vec<_>>()
     });
     for _ in 0..100 {
         assert!(got(|name, e| nearmiss_device_name(Some(&device), name, e)).is_ok());
         assert_eq!(got(|is, e| nearmiss_device_is_gpu(Some(&device), is, e)), Ok(false));
-        assert_eq!(told(|e| nearmiss_device_limit(Some(&device), 1 << 40, e)), Ok(()));
+        assert_eq!(told(|e| nearmiss_device_set_memory_limit(Some(&device), 1 << 40, e)), Ok(()));
         std::thread::yield_now();
     }
     nearmiss_device_free(Some(device));

@@ -1,7 +1,8 @@
-//! The functions as C calls them: the answers are the library's, and what cannot be is refused with its code and sentence.
+//! The functions as C calls them: answers are the library's, and bad arguments are refused.
 
 mod answers;
 mod interrupted;
+mod one_detector;
 mod refusals;
 mod submitted;
 
@@ -80,7 +81,7 @@ fn described(body: &Body) -> NearmissBody {
 }
 
 fn scene(bodies: &[NearmissBody]) -> Box<NearmissScene> {
-    let mut scene = own(got(|scene, error| nearmiss_scene_new(scene, error)));
+    let mut scene = own(got(|scene, error| nearmiss_scene_create(scene, error)));
     for (number, body) in bodies.iter().enumerate() {
         // SAFETY: tests keep what bodies point to.
         let id = got(|id, error| unsafe { nearmiss_scene_add(Some(&mut scene), Some(body), id, error) });
@@ -89,21 +90,68 @@ fn scene(bodies: &[NearmissBody]) -> Box<NearmissScene> {
     scene
 }
 
-fn detector(bodies: &[NearmissBody], query: NearmissQuery) -> Told<Box<NearmissDetector>> {
+fn detector(bodies: &[NearmissBody]) -> Box<NearmissDetector> {
     let (device, scene) = (device(), scene(bodies));
-    // SAFETY: names are NULL or texts of the tests.
-    let made = got(|made, error| unsafe {
-        nearmiss_detector_new(Some(&device), Some(&scene), Some(&query), made, error)
-    });
+    let made = got(|made, error| nearmiss_detector_create(Some(&device), Some(&scene), made, error));
     nearmiss_device_free(Some(device));
     nearmiss_scene_free(Some(scene));
+    own(made)
+}
+
+/// A near query within a distance.
+fn near(distance: f64) -> NearmissQuery {
+    NearmissQuery { distance, ..nearmiss_query(NearmissQueryKind::NEARMISS_NEAR as u32) }
+}
+
+fn update(detector: &mut NearmissDetector, motions: &[NearmissMotion]) -> Told<()> {
+    // SAFETY: tests keep memory that motions point to.
+    told(|error| unsafe { nearmiss_detector_update(Some(detector), motions.as_ptr(), motions.len(), error) })
+}
+
+fn query(detector: &mut NearmissDetector, query: &NearmissQuery) -> Told<Box<NearmissAnswer>> {
+    // SAFETY: names are NULL or texts of the tests.
+    let made =
+        got(|answer, error| unsafe { nearmiss_detector_query(Some(detector), Some(query), answer, error) });
     made.map(|made| own(Ok(made)))
 }
 
-fn frame(detector: &mut NearmissDetector, inputs: &[NearmissInput]) -> Told<Box<NearmissAnswer>> {
-    // SAFETY: tests keep what inputs point to.
+fn step(
+    detector: &mut NearmissDetector,
+    motions: &[NearmissMotion],
+    query: &NearmissQuery,
+) -> Told<Box<NearmissAnswer>> {
+    let (from, count) = (motions.as_ptr(), motions.len());
+    // SAFETY: tests keep memory that motions point to; names are NULL or texts of the tests.
     let made = got(|answer, error| unsafe {
-        nearmiss_detector_frame(Some(detector), inputs.as_ptr(), inputs.len(), answer, error)
+        nearmiss_detector_step(Some(detector), from, count, Some(query), answer, error)
     });
     made.map(|made| own(Ok(made)))
+}
+
+fn collect(detector: &mut NearmissDetector, query: &NearmissQuery) -> Told<Box<NearmissAnswer>> {
+    // SAFETY: names are NULL or texts of the tests.
+    let made =
+        got(|answer, error| unsafe { nearmiss_detector_collect(Some(detector), Some(query), answer, error) });
+    made.map(|made| own(Ok(made)))
+}
+
+fn prepare(
+    detector: &mut NearmissDetector,
+    motions: &[NearmissMotion],
+    queries: &[NearmissQuery],
+) -> Told<()> {
+    let (of, count) = (motions.as_ptr(), motions.len());
+    // SAFETY: tests keep memory that motions point to; names are NULL or texts of the tests.
+    told(|error| unsafe {
+        nearmiss_detector_prepare(Some(detector), of, count, queries.as_ptr(), queries.len(), error)
+    })
+}
+
+fn on_device(detector: &mut NearmissDetector, query: &NearmissQuery) -> Told<NearmissDeviceAnswer> {
+    // SAFETY: names are NULL or texts of the tests.
+    got(|to, error| unsafe { nearmiss_detector_on_device(Some(detector), Some(query), to, error) })
+}
+
+fn summary(answer: &NearmissAnswer) -> NearmissSummary {
+    got(|to, error| nearmiss_answer_summary(Some(answer), to, error)).expect("figures")
 }

@@ -1,41 +1,156 @@
-//! Frames of what lies in the device's memory; on a CPU that is the host's.
+//! Submissions of several queries, with positions in memory of the device; on a CPU that is the host's.
 
 use super::*;
+use NearmissCode::NEARMISS_INVALID_ARGUMENT;
+use nearmiss::scene::Pose;
 use nearmiss_lab::scene::soup;
 
-#[test]
-fn a_submitted_frame_answers_as_one_that_is_waited_for() {
-    let of = soup(120, 6, true).expect("a soup");
-    let [t0, t1] = of.ends().map(Positions::to_f64);
-    let mut lent = t0.clone();
-    let place = NearmissRows { stride: 24, ..nearmiss_doubles(lent.as_mut_ptr().cast(), lent.len()) };
-    let input = NearmissInput { on_device: 1, ..nearmiss_at(0, place) };
-    let mut own_detector = detector(&[described(&of)], nearmiss_query(0)).expect("a detector");
-    let mut by_frame = detector(&[described(&of)], nearmiss_query(0)).expect("a detector");
-    let hash = |answer: &NearmissAnswer| {
-        got(|to, error| nearmiss_answer_summary(Some(answer), to, error)).expect("figures").hash
-    };
-    // SAFETY: the positions live to the end of the test, and are written between frames.
-    let prepared =
-        got(|to, e| unsafe { nearmiss_detector_prepare(Some(&mut own_detector), &input, 1, to, e) });
-    let first = own(prepared);
-    let asked = frame(&mut by_frame, &[nearmiss_at(0, rows(&Positions::F64(t0)))]).expect("an answer");
-    assert_eq!(hash(&first), hash(&asked));
-    let place = got(|to, e| nearmiss_detector_on_device(Some(&mut own_detector), to, e)).expect("prepared");
-    assert_eq!(
-        (place.entries, place.list_count, place.start_count),
-        (NearmissEntries::NEARMISS_TRIANGLE_PAIRS, 1, 2)
-    );
-    assert!(place.status != 0 && place.lists[0].address != 0 && !place.has_earliest);
-    // A little only, so that no list grows.
-    for (at, to) in t1.iter().enumerate() {
-        // SAFETY: as above; the detector reads by the same pointer.
-        unsafe { input.positions[0].data.cast_mut().cast::<[f64; 3]>().add(at).write(*to) };
+/// Positions that the caller writes between submissions.
+struct Shared {
+    ends: [Vec<[f64; 3]>; 2],
+}
+
+impl Shared {
+    fn motion(&mut self) -> NearmissMotion {
+        let rows = [0, 1].map(|k: usize| {
+            nearmiss_doubles(self.ends[k].as_mut_ptr().cast::<f64>().cast_const(), self.ends[k].len())
+        });
+        NearmissMotion { on_device: 1, ..nearmiss_motion_step(0, rows[0], rows[1]) }
     }
-    assert_eq!(told(|e| nearmiss_detector_submit(Some(&mut own_detector), e)), Ok(()));
-    let second = own(got(|to, e| nearmiss_detector_collect(Some(&mut own_detector), to, e)));
-    let asked = frame(&mut by_frame, &[nearmiss_at(0, rows(&Positions::F64(t1)))]).expect("an answer");
-    assert_eq!(hash(&second), hash(&asked));
-    assert!(hash(&second) != hash(&first));
-    assert!(got(|to, e| nearmiss_detector_is_prepared(Some(&mut own_detector), to, e)).is_ok());
+}
+
+/// Through the pointer by which the detector reads.
+fn write(motion: &NearmissMotion, ends: &[Vec<[f64; 3]>; 2]) {
+    for (rows, points) in motion.positions.iter().zip(ends) {
+        for (vertex, point) in points.iter().enumerate() {
+            // SAFETY: as many points are there; the detector reads between writes.
+            unsafe { rows.data.cast_mut().cast::<[f64; 3]>().add(vertex).write(*point) };
+        }
+    }
+}
+
+fn submit(detector: &mut NearmissDetector) -> Told<()> {
+    told(|e| nearmiss_detector_submit(Some(detector), e))
+}
+
+fn is_prepared(detector: &mut NearmissDetector) -> bool {
+    got(|to, e| nearmiss_detector_is_prepared(Some(detector), to, e)).expect("told")
+}
+
+#[test]
+fn submitted_queries_answer_as_detectors_of_their_own() {
+    let of = soup(120, 6, true).expect("a soup");
+    let mut shared = Shared { ends: of.ends().map(Positions::to_f64) };
+    let motion = shared.motion();
+    let queries = [near(0.02), nearmiss_query(2), nearmiss_query(0), nearmiss_query(1)];
+    let mut detector_of_all = detector(&[described(&of)]);
+    assert_eq!(prepare(&mut detector_of_all, &[motion], &queries), Ok(()));
+    assert!(is_prepared(&mut detector_of_all));
+    let places = queries.map(|query| on_device(&mut detector_of_all, &query).expect("prepared"));
+    let entries = places.map(|place| (place.entries, place.has_earliest));
+    let pairs = NearmissEntries::NEARMISS_TRIANGLE_PAIRS;
+    assert_eq!((entries[0], entries[2]), ((NearmissEntries::NEARMISS_NEAR_PAIRS, false), (pairs, false)));
+    assert!(entries[1].1 && entries[3] == (NearmissEntries::NEARMISS_CONTACTS, false));
+    for place in places {
+        assert!(place.status != 0 && place.start_count == 2);
+        // SAFETY: as many are there until the next preparation.
+        let starts = unsafe { std::slice::from_raw_parts(place.starts, place.start_count) };
+        assert_eq!((starts[0], starts[1][1]), ([0; 3], 120));
+    }
+    let mut found = 0;
+    for k in 0..3 {
+        let flat = |points: &Vec<[f64; 3]>| -> Vec<[f64; 3]> {
+            points.iter().map(|p| [p[0], p[1], p[2] * (1.0 - 1e-3 * f64::from(k))]).collect()
+        };
+        let ends = of.ends().map(Positions::to_f64).map(|points| flat(&points));
+        write(&motion, &ends);
+        assert_eq!(submit(&mut detector_of_all), Ok(()));
+        for asked in &queries {
+            let answer = collect(&mut detector_of_all, asked).expect("an answer");
+            let mut single = detector(&[described(&of)]);
+            let [start, end] = ends.clone().map(Positions::F64);
+            let own = nearmiss_motion_step(0, rows(&start), rows(&end));
+            let wanted = step(&mut single, &[own], asked).expect("an answer");
+            assert_eq!(summary(&answer).hash, summary(&wanted).hash, "query {}, step {k}", asked.kind);
+            found += summary(&answer).contacts;
+        }
+    }
+    assert!(found > 100, "{found}");
+}
+
+/// Numbers that were not prepared have no place on the device, and are answered when they are collected.
+#[test]
+fn other_numbers_are_not_prepared() {
+    let of = soup(120, 6, false).expect("a soup");
+    let mut shared = Shared { ends: [of.positions_t0().to_f64(), of.positions_t0().to_f64()] };
+    let motion = shared.motion();
+    let mut made = detector(&[described(&of)]);
+    let refused = |outcome: Told<()>, says: &str| {
+        let (code, text) = outcome.expect_err(says);
+        assert!(code == NEARMISS_INVALID_ARGUMENT && text.contains(says), "{text}");
+    };
+    refused(on_device(&mut made, &near(0.01)).map(drop), "detector is not prepared");
+    refused(submit(&mut made), "prepare");
+    refused(prepare(&mut made, &[motion], &[]), "quer");
+    refused(prepare(&mut made, &[motion], &[near(0.01), near(0.02)]), "two near queries");
+    refused(prepare(&mut made, &[motion], &[near(f64::NAN)]), "distance");
+    assert!(!is_prepared(&mut made));
+    assert_eq!(prepare(&mut made, &[motion], &[near(0.01)]), Ok(()));
+    refused(on_device(&mut made, &near(0.02)).map(drop), "near query is not prepared with these numbers");
+    refused(on_device(&mut made, &nearmiss_query(0)).map(drop), "discrete query is not prepared");
+    assert!(on_device(&mut made, &near(0.01)).is_ok() && is_prepared(&mut made));
+    assert_eq!(submit(&mut made), Ok(()));
+    for asked in [near(0.01), near(0.02), nearmiss_query(0)] {
+        let found = collect(&mut made, &asked).expect("an answer");
+        let wanted = query(&mut detector(&[described(&of)]), &asked).expect("an answer");
+        assert_eq!(summary(&found).hash, summary(&wanted).hash, "{asked:?}");
+    }
+}
+
+/// Nothing was submitted: the answer is that of the bodies where they are, never an empty one.
+#[test]
+fn a_collection_without_a_submission_misses_nothing() {
+    let of = soup(120, 6, false).expect("a soup");
+    let discrete = nearmiss_query(0);
+    let wanted = query(&mut detector(&[described(&of)]), &discrete).expect("an answer");
+    let found = collect(&mut detector(&[described(&of)]), &discrete).expect("an answer");
+    assert_eq!(summary(&found).hash, summary(&wanted).hash);
+    assert!(summary(&found).contacts > 0);
+}
+
+#[test]
+fn positions_come_back_from_the_device() {
+    let of = soup(40, 6, true).expect("a soup");
+    let mut shared = Shared { ends: of.ends().map(Positions::to_f64) };
+    let motion = shared.motion();
+    let bodies = [described(&of), NearmissBody { kind: 1, ..described(&of) }];
+    let mut made = detector(&bodies);
+    let pose = NearmissPose { rotation: [0.0, 0.0, 0.6, 0.8], translation: [1.0, 0.0, 0.5] };
+    let motions = [motion, nearmiss_motion_pose(1, pose)];
+    step(&mut made, &motions, &nearmiss_query(0)).expect("an answer");
+    let count = of.vertex_count();
+    let mut got = [vec![[0.0f64; 3]; count], vec![[0.0; 3]; count]];
+    let mut download = |body: u32, count: usize| {
+        let [start, end] = &mut got;
+        let (start, end) = (start.as_mut_ptr().cast(), end.as_mut_ptr().cast());
+        // SAFETY: both have room for all vertices, and others are refused.
+        let told = told(|e| unsafe {
+            nearmiss_detector_download_positions(Some(&mut made), body, start, end, count, e)
+        });
+        told.map(|()| got.clone())
+    };
+    assert_eq!(download(0, count), Ok(of.ends().map(Positions::to_f64)));
+    let placing = Pose { rotation: pose.rotation, translation: pose.translation };
+    let placed: Vec<_> = of.positions_t0().to_f64().iter().map(|point| placing.apply(*point)).collect();
+    assert_eq!(download(1, count), Ok([placed.clone(), placed]));
+    for (body, count, says) in [(2, count, "no body 2"), (0, count + 1, "vertex_count of body 0 is wrong")] {
+        let (code, text) = download(body, count).expect_err(says);
+        assert!(code == NEARMISS_INVALID_ARGUMENT && text.contains(says), "{text}");
+    }
+    let nothing = std::ptr::null_mut();
+    // SAFETY: nothing is written to NULL.
+    let none = told(|e| unsafe {
+        nearmiss_detector_download_positions(Some(&mut made), 0, nothing, nothing, count, e)
+    });
+    assert_eq!(none, Ok(()));
 }

@@ -26,7 +26,7 @@ pub fn of(
         let [mut first, mut second] = [[0.0; 3]; 2];
         for (at, (vertex, weight)) in of.vertices.iter().zip(of.weights).enumerate() {
             let is_first = at < of.kind.vertices_of_a();
-            let body = of.owners[at].index();
+            let body = of.owner[at].index();
             let point = points[(starts[body].0 + *vertex) as usize];
             let sum = if is_first { &mut first } else { &mut second };
             (0..3).for_each(|k| sum[k] += weight * point[k]);
