@@ -111,9 +111,15 @@ for target in $intel $arm; do
     done
     nearmiss=${nearmiss:-$built/nearmiss}
     "$nearmiss" man >"$program/man/nearmiss.1"
-    for command in $("$nearmiss" --help | awk '/^Commands:/ { inside = 1; next } inside && /^$/ { exit } inside && /^  [a-z]/ && $1 != "help" { print $1 }'); do
-        "$nearmiss" man "$command" >"$program/man/nearmiss-$command.1"
-    done
+    # pages NAME...: a page for each command below these names.
+    pages() {
+        local command
+        for command in $("$nearmiss" "$@" --help | awk '/^Commands:/ { inside = 1; next } inside && /^$/ { exit } inside && /^  [a-z]/ && $1 != "help" { print $1 }'); do
+            "$nearmiss" man "$@" "$command" >"$program/man/$(printf '%s-' nearmiss "$@")$command.1"
+        done
+    }
+    pages
+    pages lab
     for shell in bash zsh fish; do "$nearmiss" completions $shell >"$program/completions/nearmiss.$shell"; done
     cmake -S c -B "$work/c-$machine" -DNEARMISS_LIBRARY_DIR="$built" -DCMAKE_INSTALL_LIBDIR=lib "${cross[@]}" >/dev/null
     cmake --build "$work/c-$machine" >/dev/null

@@ -25,7 +25,7 @@ if [ -f "$frames/cloth_ball92.ply" ]; then
     scenes+=("n-body discrete|$frames/n-body_t0.ply")
     scenes+=("n-body continuous|$frames/n-body_t0.ply $frames/n-body_t1.ply")
     for apart in 1e-5 1e-4 1e-3 1e-2; do
-        scenes+=("cloth-ball separation $apart|$frames/cloth_ball92.ply $frames/cloth_ball93.ply --separation $apart")
+        scenes+=("cloth-ball separation $apart|$frames/cloth_ball92.ply $frames/cloth_ball93.ply --min-separation $apart")
     done
 fi
 scenes+=("generated draped discrete|--scene draped --discrete")
@@ -45,11 +45,11 @@ if [ "$half" != figures ]; then
     # 2. Memory and shared memory, under the sanitizer.
     if have compute-sanitizer; then
         for tool in memcheck racecheck initcheck synccheck; do
-            for query in --discrete "--discrete --adjacent --bv obb --traversal queue" \
-                "--discrete --solver moller --traversal per-leaf --refit bottom-up" \
+            for query in --discrete "--discrete --adjacent --bounding-volume obb --traversal queue" \
+                "--discrete --solver moller --traversal per-leaf --refit levels" \
                 --continuous "--continuous --solver cubic-f32 --traversal per-leaf-spill --budget 4" --earliest \
-                "--discrete --traversal queue-gtx285 --refit levels" "--continuous --bv obb-child --traversal steal" \
-                "--discrete --traversal front --repeat 5" "--continuous --separation 0.01 --bv obb"; do
+                "--discrete --traversal queue-gtx285 --refit levels" "--continuous --bounding-volume obb --traversal steal" \
+                "--discrete --traversal front --repeat 5" "--continuous --min-separation 0.01 --bounding-volume obb"; do
                 # shellcheck disable=SC2086
                 if compute-sanitizer --tool $tool --error-exitcode 9 "$program" detect --scene draped --triangles 6000 \
                     $query --backend cuda >"$out/sanitizer.txt" 2>&1; then
@@ -80,26 +80,26 @@ done
 : >"$out/choices.jsonl"
 choice() {
     # shellcheck disable=SC2086
-    "$program" detect ${scene#*|} --backend cuda --repeat "$1" --json --bv "$2" --traversal "$3" --refit "$4" 2>/dev/null |
+    "$program" detect ${scene#*|} --backend cuda --repeat "$1" --json --bounding-volume "$2" --traversal "$3" --refit "$4" 2>/dev/null |
         sed "s/^{/{\"scene\":\"${scene%%|*}\",\"walk\":\"$3\",/" >>"$out/choices.jsonl"
 }
 for scene in "${scenes[@]}"; do
     case ${scene%%|*} in *earliest | *separation* | generated*) continue ;; esac
-    for bv in aabb linear obb obb-child; do
+    for bv in aabb linear obb; do
         for walk in per-leaf-spill queue queue-gtx285 steal front; do choice 20 $bv $walk treelets; done
-        for refit in levels bottom-up; do choice 20 $bv queue $refit; done
+        choice 20 $bv queue levels
     done
 done
 if [ -f "$frames/cloth_ball92.ply" ]; then
-    "$program" tables --backend cuda --scene cloth-ball --mesh "$frames/cloth_ball92.ply" "$frames/cloth_ball93.ply" \
-        --table 6.12 6.13 6.14 front --bv aabb linear obb --out "$out/tables-real-cloth-ball" >"$out/tables-real-cloth-ball.txt"
-    "$program" tables --backend cuda --scene n-body --mesh "$frames/n-body_t0.ply" "$frames/n-body_t1.ply" \
-        --table 6.12 6.13 6.14 front --bv aabb linear obb --out "$out/tables-real-n-body" >"$out/tables-real-n-body.txt"
+    "$program" lab tables --backend cuda --scene cloth-ball --mesh "$frames/cloth_ball92.ply" "$frames/cloth_ball93.ply" \
+        --table 6.12 6.13 6.14 front --bounding-volume aabb linear obb --out "$out/tables-real-cloth-ball" >"$out/tables-real-cloth-ball.txt"
+    "$program" lab tables --backend cuda --scene n-body --mesh "$frames/n-body_t0.ply" "$frames/n-body_t1.ply" \
+        --table 6.12 6.13 6.14 front --bounding-volume aabb linear obb --out "$out/tables-real-n-body" >"$out/tables-real-n-body.txt"
 fi
-"$program" tables --backend cuda --frames 8 --out "$out/tables" >"$out/tables.txt"
-"$program" tables --backend cuda --frames 8 --profile gtx285 --out "$out/tables-gtx285" >"$out/tables-gtx285.txt"
+"$program" lab tables --backend cuda --frames 8 --out "$out/tables" >"$out/tables.txt"
+"$program" lab tables --backend cuda --frames 8 --profile gtx285 --out "$out/tables-gtx285" >"$out/tables-gtx285.txt"
 
-# 5. The fixed list of `nearmiss bench` and the public frames, beside the last figures of such a GPU in benches/results, where there
+# 5. The fixed list of `nearmiss lab bench` and the public frames, beside the last figures of such a GPU in benches/results, where there
 #    are some: an answer that is another than there fails.
 bench=(--backend cuda --repeat 51 --out "$out")
 if [ -f "$frames/cloth_ball92.ply" ]; then
@@ -115,7 +115,7 @@ for file in "$(dirname "${BASH_SOURCE[0]}")"/results/*/bench.csv; do
     last="answers as in $file"
 done
 [ ! -f "$out/bench-earlier.csv" ] || bench+=(--against "$out/bench-earlier.csv")
-if "$program" bench "${bench[@]}" >"$out/bench.txt" 2>"$out/bench-said.txt"; then
+if "$program" lab bench "${bench[@]}" >"$out/bench.txt" 2>"$out/bench-said.txt"; then
     verdict bench "$last"
 else
     verdict bench "FAILED: $(tail -n 1 "$out/bench-said.txt")"

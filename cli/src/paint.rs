@@ -7,11 +7,11 @@ use nearmiss::scene::BodyKind;
 use std::collections::HashMap;
 use std::path::Path;
 
-/// What meets nothing.
+/// Triangles without a contact.
 pub const GREY: [u8; 3] = [190, 190, 190];
-/// What may meet: nothing else is known of it than contacts left undecided.
+/// Triangles whose contacts are all undecided.
 pub const ORANGE: [u8; 3] = [240, 160, 30];
-/// What meets, or is near.
+/// Triangles in contact, or near another.
 pub const RED: [u8; 3] = [210, 30, 30];
 
 /// Refuses a file whose name is not that of a PLY.
@@ -22,8 +22,8 @@ pub fn check(path: &Path) -> Result<(), Error> {
     match crate::output::unpacked(path).extension().and_then(|e| e.to_str()) {
         Some("ply") => Ok(()),
         _ => Err(Error::InvalidArgument {
-            what: format!("{}: the coloured mesh cannot be written in that format", path.display()),
-            advice: "give --out-mesh a name that ends in .ply or .ply.gz".into(),
+            what: format!("--out-mesh must end in .ply or .ply.gz, got {}", path.display()),
+            advice: "rename the file".into(),
         }),
     }
 }
@@ -99,7 +99,7 @@ pub fn paint(
     Ok((Mesh::new("the coloured mesh", positions, faces)?, triangles))
 }
 
-/// Features that meet, by their vertices; whether each is in undecided contacts alone.
+/// Features that meet, by their vertices; whether all contacts of each are undecided.
 #[derive(Default)]
 struct Met {
     vertices: HashMap<u32, bool>,

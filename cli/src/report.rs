@@ -12,10 +12,10 @@ use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
 
-/// What is said of an answer.
+/// The summary of an answer.
 #[derive(Serialize)]
 pub struct Report {
-    /// Of a sequence, which of its questions this is, counted from 0.
+    /// The step or frame of a sequence, from 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub step: Option<usize>,
     /// Its figures.
@@ -23,11 +23,11 @@ pub struct Report {
     pub summary: Summary,
 }
 
-/// Of each triangle the face of the file that it was cut from, of one body or two.
+/// The face of the file from which each triangle was cut, body by body.
 pub struct FileFaces(Vec<Vec<u32>>);
 
 impl FileFaces {
-    /// Of these bodies, each with the faces of its file.
+    /// The faces of these bodies.
     pub fn of(bodies: &[Body], polygons: &[Polygons]) -> FileFaces {
         let all = |(body, polygons): (&Body, &Polygons)| {
             (0..body.face_count() as u32).map(|i| polygons.file_face(i)).collect()
@@ -66,7 +66,7 @@ impl FileFaces {
                 Rows::Contacts(all)
             }
             Rows::Earliest(toi) => Rows::Earliest(*toi),
-            // Weights are those of a triangle's corners: `args` asks for no other names.
+            // Weights are those of a triangle's corners: `args` allows no other names.
             Rows::Near(near) => Rows::Near(near.clone()),
             Rows::Distance(nearest) => Rows::Distance(*nearest),
         }
@@ -76,8 +76,8 @@ impl FileFaces {
 /// Formats that contacts can be written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// `tri_a,tri_b` (`face_a,face_b`), or `kind,a,b,toi,toi_upper,status`, or
-    /// `kind,a,b,squared_distance,w0,w1,w2,closest`, or `tri_a,tri_b,distance,x_a,y_a,z_a,x_b,y_b,z_b`; before these the step and the bodies, where there are several.
+    /// Columns of the query, see [`crate::rows`]; before these the step and the bodies, if there
+    /// are several.
     Csv,
     /// One object: the summary, and the rows under `contacts`.
     Json,
@@ -86,7 +86,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// The format that a file's name asks for.
+    /// The format of a file's name.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] with the known ones.
@@ -96,10 +96,11 @@ impl Format {
             Some("json") => Ok(Format::Json),
             Some("vtp") => Ok(Format::Vtp),
             _ => Err(Error::InvalidArgument {
-                what: format!("{}: contacts cannot be written in that format", path.display()),
-                advice:
-                    "give --out a name that ends in one of: .csv, .json, .vtp, each also with .gz behind it"
-                        .into(),
+                what: format!(
+                    "--out must end in .csv, .json or .vtp, each also with .gz, got {}",
+                    path.display()
+                ),
+                advice: "rename the file".into(),
             }),
         }
     }

@@ -1,4 +1,14 @@
 //! Contacts as rows of CSV and of JSON.
+//!
+//! | answer | columns |
+//! | --- | --- |
+//! | triangle pairs | `tri_a`, `tri_b`, or `face_a`, `face_b` |
+//! | contacts | `kind`, `feature_a`, `feature_b`, `toi`, `toi_upper`, `status` |
+//! | near pairs | `kind`, `feature_a`, `feature_b`, `squared_distance`, `weight_0` to `weight_3`, `closest` |
+//! | the nearest triangles | `tri_a`, `tri_b`, `distance`, and the points `x_a` to `z_b` |
+//! | the first time | `earliest_toi` |
+//!
+//! Before these are `step` of a sequence, and `body_a`, `body_b` if there are several bodies.
 
 use nearmiss::contacts::{
     Contact, ContactGeometry, Kind, NearPair, NearestTriangles, Rows, Status, TrianglePair,
@@ -7,16 +17,16 @@ use nearmiss::scene::BodyId;
 use serde::{Serialize, Serializer};
 use std::io::Write;
 
-/// What stands before each row, and how triangles are called.
+/// The columns of each row.
 #[derive(Clone, Copy)]
 pub struct Columns<'a> {
-    /// Of a sequence, which of its questions is answered.
+    /// The step of a sequence.
     pub step: Option<usize>,
-    /// Of a scene, the bodies' names.
+    /// The names of several bodies.
     pub names: Option<&'a [String]>,
-    /// Whether triangles are told as faces of the file.
+    /// Whether rows name faces of the file instead of triangles.
     pub faces: bool,
-    /// Where each contact is, in columns behind the others.
+    /// The places of contacts, in columns after the others.
     pub geometry: Option<&'a [ContactGeometry]>,
 }
 
@@ -26,15 +36,15 @@ impl Columns<'_> {
         let triangles = if self.faces { ["face_a", "face_b"] } else { ["tri_a", "tri_b"] };
         let (own, bodies): (&[&str], bool) = match answer {
             Rows::Pairs(_) => (&triangles, true),
-            Rows::Contacts(_) => (&["kind", "feature_a", "feature_b", "toi", "toi_upper", "status"], true),
+            Rows::Contacts(_) => (&CONTACT, true),
             Rows::Earliest(_) => (&["earliest_toi"], false),
             Rows::Distance(_) => (&NEAREST, true),
+            // The weights are then those of the geometry.
+            Rows::Near(_) if self.geometry.is_some() => (&NEAR_AND_GEOMETRY, true),
             Rows::Near(_) => (&NEAR, true),
         };
         let step = self.step.map(|_| "step");
-        let bodies = Some(())
-            .filter(|()| bodies && (self.names.is_some() || self.geometry.is_some()))
-            .map(|()| ["body_a", "body_b"]);
+        let bodies = (bodies && self.names.is_some()).then_some(["body_a", "body_b"]);
         let all = step.into_iter().chain(bodies.into_iter().flatten()).chain(own.iter().copied());
         let all = all.chain(self.geometry.into_iter().flat_map(|_| GEOMETRY));
         csv.write_record(all).map_err(|e| e.to_string())
@@ -50,13 +60,12 @@ impl Columns<'_> {
                 .iter()
                 .enumerate()
                 .try_for_each(|(at, c)| self.row(csv, Some(c.bodies), &self.with(at, &contact(c)))),
-            // Of a sequence a step without a contact has its row too, and in it no time.
+            // A step without a contact has a row without a time.
             Rows::Earliest(None) if self.step.is_some() => self.row(csv, None, &[String::new()]),
             Rows::Earliest(toi) => toi.iter().try_for_each(|toi| self.row(csv, None, &[toi.to_string()])),
-            Rows::Near(pairs) => pairs
-                .iter()
-                .enumerate()
-                .try_for_each(|(at, p)| self.row(csv, Some(p.bodies), &self.with(at, &near(p)))),
+            Rows::Near(pairs) => pairs.iter().enumerate().try_for_each(|(at, p)| {
+                self.row(csv, Some(p.bodies), &self.with(at, &near(p, self.geometry.is_none())))
+            }),
             Rows::Distance(found) => {
                 found.iter().try_for_each(|n| self.row(csv, Some(n.bodies), &nearest(n)))
             }
@@ -64,7 +73,7 @@ impl Columns<'_> {
         wrote.map_err(|e| e.to_string())
     }
 
-    /// A row, and behind it where the contact is.
+    /// A row, and the place of its contact.
     fn with(&self, at: usize, own: &[String]) -> Vec<String> {
         let place = self.geometry.and_then(|all| all.get(at)).map(place);
         own.iter().cloned().chain(place.into_iter().flatten()).collect()
@@ -81,39 +90,12 @@ impl Columns<'_> {
         }
         if let (Some(names), Some(bodies)) = (self.names, bodies) {
             bodies.iter().try_for_each(|body| csv.write_field(&names[body.index()]))?;
-        } else if let (Some(_), Some(bodies)) = (self.geometry, bodies) {
-            bodies.iter().try_for_each(|body| csv.write_field(body.index().to_string()))?;
         }
         csv.write_record(own)
     }
 }
 
-/// The columns of where a contact is: of a `vf` row the vertex and the face's corners, of an `ee` row the ends of both edges.
-const GEOMETRY: [&str; 18] = [
-    "vertex_0", "vertex_1", "vertex_2", "vertex_3", "weight_0", "weight_1", "weight_2", "weight_3", "x_a",
-    "y_a", "z_a", "x_b", "y_b", "z_b", "distance", "normal_x", "normal_y", "normal_z",
-];
-
-fn place(g: &ContactGeometry) -> impl Iterator<Item = String> + use<> {
-    let numbers = g.weights.into_iter().chain(g.points.into_iter().flatten());
-    let numbers = numbers.chain([g.distance]).chain(g.normal).map(|x| x.to_string());
-    g.vertices.map(|vertex| vertex.to_string()).into_iter().chain(numbers)
-}
-
-fn kind(kind: Kind) -> String {
-    match kind {
-        Kind::Vf => "vf".into(),
-        Kind::Ee => "ee".into(),
-    }
-}
-
-fn near(pair: &NearPair) -> [String; 9] {
-    let [a, b] = [pair.feature_a, pair.feature_b].map(|i| i.to_string());
-    let [w, x, y, z] = pair.weights.map(|weight| weight.to_string());
-    [kind(pair.kind), a, b, pair.squared_distance.to_string(), w, x, y, z, pair.closest.name().into()]
-}
-
-/// The columns of a near pair.
+const CONTACT: [&str; 6] = ["kind", "feature_a", "feature_b", "toi", "toi_upper", "status"];
 const NEAR: [&str; 9] = [
     "kind",
     "feature_a",
@@ -125,9 +107,45 @@ const NEAR: [&str; 9] = [
     "weight_3",
     "closest",
 ];
-
-/// The columns of the nearest triangles.
+const NEAR_AND_GEOMETRY: [&str; 5] = ["kind", "feature_a", "feature_b", "squared_distance", "closest"];
 const NEAREST: [&str; 9] = ["tri_a", "tri_b", "distance", "x_a", "y_a", "z_a", "x_b", "y_b", "z_b"];
+
+/// The place of a contact. Vertex `i` is one of the body `owner_i`.
+const GEOMETRY: [&str; 22] = [
+    "owner_0", "owner_1", "owner_2", "owner_3", "vertex_0", "vertex_1", "vertex_2", "vertex_3", "weight_0",
+    "weight_1", "weight_2", "weight_3", "x_a", "y_a", "z_a", "x_b", "y_b", "z_b", "distance", "normal_x",
+    "normal_y", "normal_z",
+];
+
+fn place(g: &ContactGeometry) -> impl Iterator<Item = String> + use<> {
+    let numbers = g.weights.into_iter().chain(g.points.into_iter().flatten());
+    let numbers = numbers.chain([g.distance]).chain(g.normal).map(|x| x.to_string());
+    let owners = g.owner.map(|body| body.index().to_string());
+    owners.into_iter().chain(g.vertices.map(|vertex| vertex.to_string())).chain(numbers)
+}
+
+fn kind(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Vf => "vf",
+        Kind::Ee => "ee",
+    }
+}
+
+fn status(status: Status) -> &'static str {
+    match status {
+        Status::Unverified => "unverified",
+        Status::Certified => "certified",
+        Status::Undecided => "undecided",
+    }
+}
+
+fn near(pair: &NearPair, weighted: bool) -> Vec<String> {
+    let own = [kind(pair.kind).into(), pair.feature_a.to_string(), pair.feature_b.to_string()];
+    let weights = weighted.then(|| pair.weights.map(|weight| weight.to_string()));
+    let weights = weights.into_iter().flatten();
+    let distance = [pair.squared_distance.to_string()];
+    own.into_iter().chain(distance).chain(weights).chain([pair.closest.name().into()]).collect()
+}
 
 fn nearest(n: &NearestTriangles) -> [String; 9] {
     let [a, b] = n.triangles.map(|i| i.to_string());
@@ -136,42 +154,46 @@ fn nearest(n: &NearestTriangles) -> [String; 9] {
 }
 
 fn contact(c: &Contact) -> [String; 6] {
-    let status = match c.status {
-        Status::Unverified => "unverified",
-        Status::Certified => "certified",
-        Status::Undecided => "undecided",
-    };
     let [a, b] = [c.feature_a, c.feature_b].map(|i| i.to_string());
-    [kind(c.kind), a, b, c.toi.to_string(), c.toi_upper.to_string(), status.into()]
+    [kind(c.kind).into(), a, b, c.toi.to_string(), c.toi_upper.to_string(), status(c.status).into()]
 }
 
-/// An answer as rows of JSON: of a scene its bodies by their names.
+/// The names of bodies that have none in a file: their numbers, if there are several.
+pub fn numbered(bodies: usize) -> Option<Vec<String>> {
+    (bodies > 1).then(|| (0..bodies).map(|body| body.to_string()).collect())
+}
+
+/// An answer as rows of JSON.
 pub struct JsonRows<'a> {
     /// The answer.
     pub answer: &'a Rows,
-    /// Of a scene, the bodies' names.
+    /// The names of several bodies.
     pub names: Option<&'a [String]>,
-    /// Where each contact is: `geometry` of its row.
+    /// The place of each contact: `geometry` of its row.
     pub geometry: Option<&'a [ContactGeometry]>,
 }
 
-/// A row, and where its contact is.
+/// A row, the names of its bodies, and its place.
 #[derive(Serialize)]
 struct Placed<'a, T> {
-    body_a: String,
-    body_b: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    body_a: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    body_b: Option<&'a str>,
     #[serde(flatten)]
     row: T,
-    geometry: &'a ContactGeometry,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    geometry: Option<Place<'a>>,
 }
 
-/// A row whose bodies are told by their names.
 #[derive(Serialize)]
-struct Named<'a, T> {
-    body_a: &'a str,
-    body_b: &'a str,
-    #[serde(flatten)]
-    row: T,
+struct Place<'a> {
+    owner: [usize; 4],
+    vertices: &'a [u32; 4],
+    weights: &'a [f64; 4],
+    points: &'a [[f64; 3]; 2],
+    distance: f64,
+    normal: &'a [f64; 3],
 }
 
 #[derive(Serialize)]
@@ -181,17 +203,17 @@ struct Triangles {
 
 #[derive(Serialize)]
 struct Meeting {
-    kind: Kind,
+    kind: &'static str,
     feature_a: u32,
     feature_b: u32,
     toi: f64,
     toi_upper: f64,
-    status: Status,
+    status: &'static str,
 }
 
 #[derive(Serialize)]
 struct Nearness {
-    kind: Kind,
+    kind: &'static str,
     feature_a: u32,
     feature_b: u32,
     squared_distance: f64,
@@ -209,65 +231,54 @@ struct Nearest {
 
 impl Serialize for JsonRows<'_> {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        if let Some(geometry) = self.geometry {
-            return self.placed(geometry, to);
-        }
-        let Some(names) = self.names else {
-            return match self.answer {
-                Rows::Pairs(pairs) => to.collect_seq(pairs.iter().map(|pair| pair.triangles)),
-                Rows::Contacts(all) => all.serialize(to),
-                Rows::Earliest(toi) => toi.serialize(to),
-                Rows::Near(near) => near.serialize(to),
-                Rows::Distance(nearest) => to.collect_seq(nearest),
-            };
-        };
-        let [of_a, of_b] = [0, 1].map(|k| move |bodies: [BodyId; 2]| names[bodies[k].index()].as_str());
         match self.answer {
             Rows::Pairs(pairs) => to.collect_seq(pairs.iter().map(|&TrianglePair { bodies, triangles }| {
-                Named { body_a: of_a(bodies), body_b: of_b(bodies), row: Triangles { triangles } }
+                self.placed(None, bodies, Triangles { triangles })
             })),
-            Rows::Contacts(all) => to.collect_seq(all.iter().map(|c| {
-                let &Contact { kind, bodies, feature_a, feature_b, toi, toi_upper, status } = c;
-                let row = Meeting { kind, feature_a, feature_b, toi, toi_upper, status };
-                Named { body_a: of_a(bodies), body_b: of_b(bodies), row }
+            Rows::Contacts(all) => to.collect_seq(all.iter().enumerate().map(|(at, c)| {
+                let row = Meeting {
+                    kind: kind(c.kind),
+                    feature_a: c.feature_a,
+                    feature_b: c.feature_b,
+                    toi: c.toi,
+                    toi_upper: c.toi_upper,
+                    status: status(c.status),
+                };
+                self.placed(Some(at), c.bodies, row)
             })),
             Rows::Earliest(toi) => toi.serialize(to),
             Rows::Distance(found) => to.collect_seq(found.iter().map(|nearest| {
                 let &NearestTriangles { bodies, triangles, distance, weights, points } = nearest;
-                let row = Nearest { triangles, distance, weights, points };
-                Named { body_a: of_a(bodies), body_b: of_b(bodies), row }
+                self.placed(None, bodies, Nearest { triangles, distance, weights, points })
             })),
-            Rows::Near(near) => to.collect_seq(near.iter().map(|pair| {
-                let &NearPair { kind, bodies, feature_a, feature_b, squared_distance, weights, closest } =
-                    pair;
-                let row = Nearness { kind, feature_a, feature_b, squared_distance, weights, closest };
-                Named { body_a: of_a(bodies), body_b: of_b(bodies), row }
+            Rows::Near(near) => to.collect_seq(near.iter().enumerate().map(|(at, pair)| {
+                let row = Nearness {
+                    kind: kind(pair.kind),
+                    feature_a: pair.feature_a,
+                    feature_b: pair.feature_b,
+                    squared_distance: pair.squared_distance,
+                    weights: pair.weights,
+                    closest: pair.closest,
+                };
+                self.placed(Some(at), pair.bodies, row)
             })),
         }
     }
 }
 
-impl JsonRows<'_> {
-    /// JsonRows with where each contact is; of a scene its bodies by their names, else by their numbers.
-    fn placed<S: Serializer>(&self, geometry: &[ContactGeometry], to: S) -> Result<S::Ok, S::Error> {
-        let name =
-            |body: BodyId| self.names.map_or_else(|| body.index().to_string(), |n| n[body.index()].clone());
-        fn row<T: Serialize>(
-            row: T,
-            geometry: &ContactGeometry,
-            [body_a, body_b]: [String; 2],
-        ) -> Placed<'_, T> {
-            Placed { body_a, body_b, row, geometry }
-        }
-        match self.answer {
-            Rows::Contacts(all) => {
-                to.collect_seq(all.iter().zip(geometry).map(|(c, g)| row(c, g, g.bodies.map(name))))
-            }
-            Rows::Near(all) => {
-                to.collect_seq(all.iter().zip(geometry).map(|(p, g)| row(p, g, g.bodies.map(name))))
-            }
-            // `args` refuses the geometry of these.
-            Rows::Pairs(_) | Rows::Earliest(_) | Rows::Distance(_) => to.collect_seq([(); 0]),
-        }
+impl<'a> JsonRows<'a> {
+    /// A row with the names of its bodies, and the place of contact `at`.
+    fn placed<T>(&self, at: Option<usize>, bodies: [BodyId; 2], row: T) -> Placed<'a, T> {
+        let [body_a, body_b] = bodies.map(|body| self.names.map(|names| names[body.index()].as_str()));
+        let place = at.zip(self.geometry).and_then(|(at, all)| all.get(at));
+        let geometry = place.map(|g| Place {
+            owner: g.owner.map(|body| body.index()),
+            vertices: &g.vertices,
+            weights: &g.weights,
+            points: &g.points,
+            distance: g.distance,
+            normal: &g.normal,
+        });
+        Placed { body_a, body_b, row, geometry }
     }
 }

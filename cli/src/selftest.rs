@@ -25,7 +25,7 @@ use std::process::ExitCode;
 
 /// Triangles of the scenes that the sanitizer, which is some hundred times slower, looks at.
 const SMALL: usize = 300;
-/// Equal triangles: all pairs of their features touch from the start, which only exact signs can tell.
+/// Equal triangles: all pairs of their features touch at the start, which only exact signs decide.
 const EQUAL: usize = 40;
 
 /// Steps of a scene of many bodies.
@@ -50,7 +50,7 @@ const REPLAYED: u32 = 3;
 fn print_of(device: &Device, bodies: &[Body], query: Query) -> Result<Print, Error> {
     let mut detector = OneQuery::new(device.clone(), bodies.to_vec(), query)?;
     let mut contacts = detector.detect()?;
-    // A GPU does what it is told a third time at once. A front goes on from frame to frame, and asks less.
+    // A GPU replays a frame from the third time on. A front continues from frame to frame, and tests less.
     if device.is_gpu() && !matches!(query.search().traversal, Some(Traversal::Front(_))) {
         for _ in 1..REPLAYED {
             contacts = detector.detect()?;
@@ -78,7 +78,7 @@ fn print_after(detector: &mut OneQuery, contacts: &Contacts) -> Result<Print, Er
     Ok(Print { contacts: contacts.len(), stages })
 }
 
-/// The same question, asked in every way that must leave the same behind at every stage.
+/// The same query in every way that must leave the same results at every stage.
 fn choices(query: Query) -> Vec<(&'static str, Query)> {
     let spill = Traversal::PerLeaf { budget: Some(8) };
     let refit = |refit| query.with_refit(refit).with_traversal(spill);
@@ -89,7 +89,6 @@ fn choices(query: Query) -> Vec<(&'static str, Query)> {
             ("by default", query),
             ("by levels", refit(Refit::Levels)),
             ("by treelets", refit(Refit::Treelets)),
-            ("bottom-up", refit(Refit::BottomUp)),
         ];
     }
     vec![
@@ -98,7 +97,6 @@ fn choices(query: Query) -> Vec<(&'static str, Query)> {
         ("trees", query.with_broad(Broad::Tree)),
         ("spilling, by levels", refit(Refit::Levels)),
         ("spilling, by treelets", refit(Refit::Treelets)),
-        ("spilling, bottom-up", refit(Refit::BottomUp)),
         ("queues", walk(Traversal::Queue(QueueShape::native()))),
         ("the paper's queues", walk(Traversal::Queue(QueueShape::gtx285()))),
         ("stealing", walk(Traversal::Steal(StealShape::native()))),
@@ -106,8 +104,8 @@ fn choices(query: Query) -> Vec<(&'static str, Query)> {
     ]
 }
 
-/// What the engine leaves behind, by everything that may leave something else. Overlap tests with a slack do not nest: whether a pair is
-/// a candidate may depend, by a hair, on which pairs of nodes were asked before it. Each is compared with its own; contacts with all.
+/// The results of the engine, for each way that may leave others. Overlap tests with a slack do not nest: whether a pair is
+/// a candidate may depend, by a hair, on which pairs of nodes were tested before it. Each is compared with its own; contacts with all.
 struct Truths {
     by_leaf: Print,
     by_pair: Print,
@@ -115,7 +113,7 @@ struct Truths {
 }
 
 impl Truths {
-    /// What `ask` finds by each, of a query that has a choice; else once.
+    /// The results of `ask` by each way, or once if the query has no choice.
     fn of(query: Query, ask: impl Fn(Query) -> Result<Print, Error>) -> Result<Truths, Error> {
         let choice = query.kind().takes_traversals();
         let by = |other: Query| ask(if choice { other } else { query });
@@ -126,7 +124,7 @@ impl Truths {
         })
     }
 
-    /// What a query should leave behind on a machine.
+    /// The expected results of a query on a machine.
     fn want(&self, query: Query, machine: &Device) -> &Print {
         let by_leaf = |walk| matches!(walk, Traversal::PerLeaf { .. } | Traversal::NearestFirst);
         if query.broad_on(machine.is_gpu()) == Broad::Tiles {
@@ -167,7 +165,7 @@ fn difference(one: &Print, other: &Print) -> Option<&'static str> {
     one.stages.iter().zip(&other.stages).find(|(a, b)| a != b).map(|(a, _)| a.0)
 }
 
-/// What was found so far: faults; all else is printed as it comes.
+/// The machines, and the faults so far.
 struct Bench {
     machine: Device,
     engine: Device,
@@ -183,7 +181,7 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
     bench.known_answer()?;
     bench.stages(args)?;
     bench.under_the_microscope()?;
-    let report = during("counting what is appended", || appends::compare(&bench.machine, &bench.engine))?;
+    let report = during("counting appended rows", || appends::compare(&bench.machine, &bench.engine))?;
     line(report.table)?;
     bench.faults.extend(report.faults);
     if args.cases > 0 {
@@ -195,7 +193,7 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
     line(if bench.faults.is_empty() { "ok: every stage agrees to the bit" } else { "FAILED" }.into())?;
     match bench.faults.first() {
         None => Ok(ExitCode::SUCCESS),
-        Some(first) => Err(Error::Bug { what: format!("a check of this machine fails: {first}") }),
+        Some(first) => Err(Error::Bug { what: format!("a check of this machine failed: {first}") }),
     }
 }
 
@@ -214,10 +212,10 @@ impl Bench {
         Ok(())
     }
 
-    /// Every scene, asked on the machine in every way and on the CPU.
+    /// Every scene, on the machine in every way and on the CPU.
     fn stages(&mut self, args: &SelftestArgs) -> Result<(), Error> {
         for name in scene::FORMULAS {
-            // Of n equal triangles all n² / 2 pairs meet: few will do.
+            // All n² / 2 pairs of n equal triangles meet: few will do.
             let triangles = if name == "identical" { EQUAL } else { args.triangles };
             self.compare(name, &[scene::scene(name, triangles, 1)?])?;
         }
@@ -242,24 +240,24 @@ impl Bench {
                 let on_engine = |query| during("comparing machines", || print_of_steps(engine, scene, query));
                 let truths = Truths::of(query, on_engine)?;
                 if let Some((other, stage)) = truths.disagree() {
-                    faults.push(format!("{name}, {kind:?}, {}, {other}: {stage}", bv.name()));
+                    faults.push(format!("{name}, {kind}, {}, {other}: {stage}", bv.name()));
                 }
                 for (what, other) in choices(query) {
                     let there = during("comparing machines", || print_of_steps(machine, scene, other))?;
                     let want = truths.want(other, machine);
-                    // Where a front goes on from the step before, what it asks hangs on that: the answer does not.
+                    // The tests of a front depend on the step before. The answer does not.
                     let differs = match other.search().traversal {
                         Some(Traversal::Front(_)) => difference(&want.answer(), &there.answer()),
                         _ => difference(want, &there),
                     };
                     if let Some(stage) = differs {
-                        faults.push(format!("{name}, {kind:?}, {}, {what}: {stage}", bv.name()));
+                        faults.push(format!("{name}, {kind}, {}, {what}: {stage}", bv.name()));
                     }
                 }
                 if bv == Bv::Aabb {
                     let hash = truths.by_leaf.stages.last().map_or(0, |stage| stage.1);
                     let contacts = counted(truths.by_leaf.contacts as u64, "contact", "contacts");
-                    line(format!("{hash:016x} {contacts:>18}  {name}, {kind:?}"))?;
+                    line(format!("{hash:016x} {contacts:>18}  {name}, {kind}"))?;
                 }
             }
         }
@@ -307,7 +305,7 @@ impl Bench {
             let triangles = if name == "identical" { EQUAL } else { SMALL };
             let bodies = [scene::scene(name, triangles, 3)?];
             for (asked, query) in questions(&bodies) {
-                // What is fastest on the machine, on both.
+                // The default of the machine, on both.
                 let query = query.with_broad(query.broad_on(machine.is_gpu()));
                 let want = print_of(machine, &bodies, query)?;
                 for order in [Order::Forward, Order::Reverse, Order::Shuffled(3)] {
@@ -331,7 +329,7 @@ impl Bench {
                 told = line(format!("extremes       {report}"));
             }
         };
-        let reports = during("asking the extremes", || robustness::run(&self.machine, amount, tell))?;
+        let reports = during("running extreme cases", || robustness::run(&self.machine, amount, tell))?;
         for report in reports.iter().filter(|report| !report.is_right()) {
             let failures = counted(report.failed, "failure", "failures");
             self.faults.push(format!("extremes, {}: {failures}", report.suite));

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// What is not whole yet.
+/// Files that are not whole yet.
 struct Unfinished {
     /// New files that have no name of their own yet. Those that are gone do no harm: no other file
     /// gets such a name.
@@ -15,7 +15,7 @@ struct Unfinished {
     opened: u64,
 }
 
-/// Held by whoever makes, writes or gives up such a file; a signal holds it to the end, so that
+/// Held to make, write or give up such a file. A signal holds it to the end, so that
 /// nothing is written behind it.
 static UNFINISHED: Mutex<Unfinished> =
     Mutex::new(Unfinished { new: Vec::new(), open: Vec::new(), opened: 0 });
@@ -78,7 +78,7 @@ impl Drop for Writing<'_> {
 fn give_up() -> MutexGuard<'static, Unfinished> {
     let unfinished = unfinished();
     for (_, file) in &unfinished.open {
-        // What cannot be emptied stays as it is: nothing more can be done.
+        // A file that cannot be emptied stays as it is.
         let _ = file.set_len(0);
     }
     for file in &unfinished.new {

@@ -8,7 +8,7 @@ use nearmiss::contacts::{ContactGeometry, Kind, NearestTriangles, Rows};
 use std::fmt::Display;
 use std::io::{self, Write};
 
-/// What is known of one contact.
+/// One contact.
 struct Entry {
     step: usize,
     kind: u8,
@@ -95,7 +95,7 @@ impl Vtp {
         out.write_all(b"</Piece>\n</PolyData>\n</VTKFile>\n")
     }
 
-    /// What is said of each cell, in the order of the cells.
+    /// The data of each cell, in the order of the cells.
     fn cells(&self, out: &mut dyn Write, order: &[usize]) -> io::Result<()> {
         let all = || order.iter().map(|&at| &self.entries[at]);
         array(out, "Int64", "row", 1, order.iter())?;
@@ -104,8 +104,8 @@ impl Vtp {
         }
         array(out, "UInt8", "kind", 1, all().map(|e| e.kind))?;
         array(out, "Int64", "bodies", 2, all().flat_map(|e| e.bodies))?;
-        array(out, "Int64", "a", 1, all().map(|e| e.features[0]))?;
-        array(out, "Int64", "b", 1, all().map(|e| e.features[1]))?;
+        array(out, "Int64", "feature_a", 1, all().map(|e| e.features[0]))?;
+        array(out, "Int64", "feature_b", 1, all().map(|e| e.features[1]))?;
         array(out, "Float64", "distance", 1, all().map(|e| exponent(e.distance)))?;
         if self.entries.iter().any(|e| e.time.is_some()) {
             let times = |end: usize| all().filter_map(move |e| e.time.map(|(toi, _)| exponent(toi[end])));

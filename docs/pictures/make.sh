@@ -11,7 +11,7 @@ size=720x540
 "$nearmiss" picture --scene cloth-ball --triangles 20000 --discrete --size $size --out "$here/cloth-ball.png"
 "$nearmiss" picture --scene draped --triangles 12000 --view 3,-7,-1 --discrete --around contacts --size 640x480 --out "$here/draped.png"
 
-"$nearmiss" scene draped --triangles 6000 --out "$made"
+"$nearmiss" lab scene draped --triangles 6000 --out "$made"
 cat > "$made/scene.toml" <<'TOML'
 [[body]]
 name = "cloth on a ball"

@@ -108,7 +108,7 @@ impl Traversal {
 named! {
     /// What candidates are found by.
     pub enum Broad {
-        /// A tree of volumes, level by level: the seed's.
+        /// A tree of volumes, level by level: the paper's.
         Tree = "tree",
         /// Runs of 32 neighbours along a curve, all against all where the runs' volumes overlap.
         Tiles = "tiles",
@@ -157,7 +157,7 @@ named! {
 named! {
     /// How the volumes of a tree follow its triangles. All ways give the same bits.
     pub enum Refit {
-        /// A launch a level, the seed's way.
+        /// A launch a level, the paper's way.
         Levels = "levels",
         /// One launch for all volumes: a block a subtree, the rest by the block that is done last.
         Treelets = "treelets",

@@ -7,17 +7,17 @@ named! {
     pub enum Solver {
         /// Discrete: exact signs by filter, then integers. Never wrong. The default.
         Exact = "exact",
-        /// Discrete: the seed's float test. Can miss, can err.
+        /// Discrete: the paper's float test. Can miss, can err.
         Moller = "moller",
         /// Continuous: isolated roots, in f32 and, where that is not enough, in f64 and beyond. Never misses, is never late.
         Certified = "certified",
-        /// The same in f32 alone: leaves more undecided.
+        /// The same in f32 alone: leaves more uncertain.
         CertifiedF32 = "certified-f32",
         /// The same in f64 alone: costs more.
         CertifiedF64 = "certified-f64",
-        /// Continuous: the seed's cubic in f64. Can miss degenerate motion.
+        /// Continuous: the paper's cubic in f64. Can miss degenerate motion.
         CubicF64 = "cubic-f64",
-        /// Continuous: the seed's cubic in f32. Can miss, can be late.
+        /// Continuous: the paper's cubic in f32. Can miss, can be late.
         CubicF32 = "cubic-f32",
         /// Near, distance: distances in f64, each within a proven bound. Never misses; 0 is decided by exact signs.
         Bounded = "bounded",
@@ -56,10 +56,10 @@ impl Solver {
                 "moller: a float test that can miss contacts and invent some; use exact for certainty"
             }
             Solver::Certified => {
-                "certified: no contact is missed, none is late; what is nearer than the tolerance may be listed as undecided"
+                "certified: no contact is missed, none is late; what is nearer than the tolerance may be listed as uncertain"
             }
             Solver::CertifiedF32 => {
-                "certified-f32: no contact is missed, none is late; what f32 cannot tell is listed as undecided"
+                "certified-f32: no contact is missed, none is late; what f32 cannot tell is listed as uncertain"
             }
             Solver::CertifiedF64 => "certified-f64: as certified, in f64 throughout",
             Solver::Bounded => {

@@ -178,7 +178,7 @@ def test_the_program_gives_the_same_answer(tmp_path):
     program, name = os.environ["NEARMISS_PROGRAM"], "draped"
     frames = [tmp_path / f"{name}_{end}.ply" for end in ("t0", "t1")]
     run = lambda *args: subprocess.run([program, *map(str, args)], check=True, capture_output=True, text=True).stdout
-    run("scene", name, "--triangles", 2000, "--out", tmp_path)
+    run("lab", "scene", name, "--triangles", 2000, "--out", tmp_path)
     told = json.loads(run("detect", *sorted(tmp_path.glob("*.ply")), "--json"))
     (t0, faces), (t1, _) = (nm.read_mesh(path) for path in sorted(tmp_path.glob("*.ply")))
     found = nm.contacts(t0, t1, faces)

@@ -1,35 +1,75 @@
-//! What `bench` takes.
+//! The arguments of `lab bench`.
 
 use super::number::{above_zero, whole};
-use super::{MachineArgs, ReportArgs};
-use crate::bench::{GENERATED, Question};
-use clap::{ArgMatches, Args};
+use super::{MachineArgs, RESEARCH, ReportArgs, help};
+use clap::{ArgMatches, Args, ValueEnum};
 use std::path::PathBuf;
 
+/// Queries, each with all choices at their defaults.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Question {
+    /// Triangle pairs that share a point at t = 0.
+    Discrete,
+    /// Feature pairs that meet during the step, certified.
+    Continuous,
+    /// The same, with those that come within a hundredth of the mean edge.
+    Separation,
+    /// The first time of contact.
+    Earliest,
+    /// Feature pairs within a tenth of the mean edge at t = 0.
+    Near,
+    /// The two nearest triangles of different bodies at t = 0.
+    Distance,
+}
+
+impl Question {
+    /// Its name, on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Question::Discrete => "discrete",
+            Question::Continuous => "continuous",
+            Question::Separation => "separation",
+            Question::Earliest => "earliest",
+            Question::Near => "near",
+            Question::Distance => "distance",
+        }
+    }
+}
+
 #[derive(Args)]
+#[command(next_help_heading = RESEARCH)]
 pub struct BenchArgs {
-    #[arg(long, num_args = 1.., value_name = "NAME", help = cases())]
+    /// Time only these cases [default: all]
+    ///
+    /// --list prints their names. A file of --mesh is a case too.
+    #[arg(long, num_args = 1.., value_name = "NAME")]
     pub case: Vec<String>,
-    /// What is asked of each case [default: all that can be].
-    #[arg(long, num_args = 1.., value_enum, value_name = "QUESTION")]
+    /// Time only these queries [default: all that a case has]
+    #[arg(long, num_args = 1.., value_enum, value_name = "QUERY", hide_possible_values = true,
+        long_help = queries())]
     pub question: Vec<Question>,
-    /// One more case, named as its file: a mesh at one frame, or at the two ends of a step. May be given several times.
+    /// Add a case, named as its file: one frame, or two ends of a step
+    ///
+    /// May be given several times.
     #[arg(long, num_args = 1..=2, value_name = "FILE")]
     mesh: Vec<PathBuf>,
     /// The files of each `--mesh`.
     #[arg(skip)]
     pub meshes: Vec<Vec<PathBuf>>,
-    /// Frames that count, of each question, after two to warm up.
-    #[arg(long, default_value_t = 11, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u32>(1, 100_000))]
+    /// Set the frames that count, after two to warm up
+    #[arg(long, default_value_t = 11, value_name = "N", allow_negative_numbers = true,
+        value_parser = whole::<u32>(1, 100_000))]
     pub repeat: u32,
-    /// A bench.csv from before: its times are printed beside the new ones, and an answer that is another than in it is an error.
+    /// Compare with an earlier bench.csv; another answer is an error
     #[arg(long, value_name = "FILE")]
     pub against: Option<PathBuf>,
-    /// It is an error, too, where a frame or the wait for it takes more than this many times the earlier median. For a file of
-    /// the same machine.
-    #[arg(long, value_name = "RATIO", requires = "against", allow_hyphen_values = true, value_parser = above_zero())]
+    /// Fail if a frame takes more than RATIO times the earlier median
+    ///
+    /// For a file of the same machine. Frame and wall time are compared.
+    #[arg(long, value_name = "RATIO", requires = "against", allow_hyphen_values = true,
+        value_parser = above_zero())]
     pub limit: Option<f64>,
-    /// Print what the cases are, and do nothing else.
+    /// Print the cases, and measure nothing
     #[arg(long, exclusive = true)]
     pub list: bool,
     #[command(flatten)]
@@ -38,10 +78,10 @@ pub struct BenchArgs {
     pub report: ReportArgs,
 }
 
-/// Help that names the cases.
-fn cases() -> String {
-    let names = GENERATED.iter().map(|of| of.name).collect::<Vec<_>>().join(", ");
-    format!("Only these cases: {names}, and the files of --mesh [default: all]")
+/// Help that names the queries.
+fn queries() -> String {
+    let names = Question::value_variants().iter().map(|query| query.name()).collect::<Vec<_>>();
+    help::listed("Time only these queries [default: all that a case has]", &names)
 }
 
 impl BenchArgs {

@@ -1,12 +1,11 @@
-//! Which of the files named are the mesh's, and which are those of `--with`.
+//! The files of the mesh, and those of `--with`.
 
 use clap::ArgMatches;
 use nearmiss::error::Error;
-use nearmiss::words::counted;
 use std::path::PathBuf;
 
-/// Parts the files. `--with` takes one file and may be given twice; files right behind it are its own as well where the mesh
-/// stands before it, and the mesh's where it does not.
+/// Parts the files. `--with` takes one file and may be given twice. Files right after it are its own
+/// too if the mesh is named before it, and the mesh's otherwise.
 pub fn part(matches: &ArgMatches, meshes: &mut Vec<PathBuf>, with: &mut Vec<PathBuf>) {
     let places = |id| matches.indices_of(id).into_iter().flatten().collect::<Vec<_>>();
     let (of_mesh, mut of_with) = (places("meshes"), places("with"));
@@ -27,11 +26,11 @@ pub fn part(matches: &ArgMatches, meshes: &mut Vec<PathBuf>, with: &mut Vec<Path
 /// # Errors
 /// [`Error::InvalidArgument`] for more than two of either.
 pub fn at_most_two(meshes: &[PathBuf], with: &[PathBuf]) -> Result<(), Error> {
-    match [("the mesh", meshes.len()), ("--with", with.len())].into_iter().find(|(_, files)| *files > 2) {
+    match [("MESH", meshes.len()), ("--with", with.len())].into_iter().find(|(_, files)| *files > 2) {
         None => Ok(()),
         Some((of, files)) => Err(Error::InvalidArgument {
-            what: format!("{} for {of}", counted(files as u64, "file", "files")),
-            advice: "give one, or two for both ends of a step".into(),
+            what: format!("{of} takes one or two files, got {files}"),
+            advice: "give one mesh, or both ends of a step".into(),
         }),
     }
 }
@@ -44,8 +43,8 @@ pub fn as_many(meshes: &[PathBuf], with: &[PathBuf]) -> Result<(), Error> {
     match (meshes.len(), with.len()) {
         (a, b) if a < 2 || b < 2 || a == b => Ok(()),
         (a, b) => Err(Error::InvalidArgument {
-            what: format!("{} for the mesh and {b} for --with", counted(a as u64, "file", "files")),
-            advice: "give each one, which rests, or as many as the other".into(),
+            what: format!("MESH and --with must have equal numbers of frames, got {a} and {b}"),
+            advice: "give as many files for each, or one file for a mesh at rest".into(),
         }),
     }
 }

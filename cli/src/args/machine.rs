@@ -1,4 +1,4 @@
-//! Where to run, and where figures go.
+//! Options that choose the machine.
 
 use super::choice;
 use super::number::whole;
@@ -7,15 +7,15 @@ use clap::Args;
 use nearmiss::device::{Backend, Device};
 use nearmiss::error::Error;
 use nearmiss::words::counted;
-use std::path::PathBuf;
 
-/// Where to run.
+/// The machine.
 #[derive(Args)]
+#[command(next_help_heading = super::MACHINE)]
 pub struct MachineArgs {
-    /// Which machine.
-    #[arg(long, value_parser = choice::<Backend>(), default_value_t)]
+    /// Choose the machine
+    #[arg(long, value_name = "NAME", value_parser = choice::<Backend>(), default_value_t)]
     pub backend: Backend,
-    /// CPU threads, at most as many as there are processors; nothing to a GPU [default: all].
+    /// Limit the threads of a CPU [default: one a processor]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u16>(1, 65_535))]
     pub threads: Option<u16>,
 }
@@ -26,38 +26,27 @@ impl MachineArgs {
     /// # Errors
     /// Those of [`Device::open`].
     pub fn open(&self) -> Result<Device, Error> {
-        Device::open(self.backend, self.threads.map(|asked| at_most_all(asked.into())))
+        Device::open(self.backend, self.threads.map(|threads| at_most_all(threads.into())))
     }
 
-    /// So many threads for the machine that the arguments name; none if it can be no CPU.
+    /// A number of threads, for a machine that may be a CPU.
     pub fn of_cpu(&self, threads: usize) -> Option<usize> {
         (self.backend != Backend::Cuda).then_some(threads)
     }
 
-    /// How many threads a CPU gets: as many as were asked for and there are processors.
+    /// Threads of a CPU: those of `--threads`, at most one a processor.
     pub fn count(&self) -> usize {
         let all = || std::thread::available_parallelism().map_or(1, usize::from);
-        self.threads.map_or_else(all, |asked| at_most_all(asked.into()))
+        self.threads.map_or_else(all, |threads| at_most_all(threads.into()))
     }
 }
 
-/// No more threads than processors: more only wait for each other. Says so.
-fn at_most_all(asked: usize) -> usize {
-    let all = std::thread::available_parallelism().map_or(asked, usize::from);
-    if asked > all {
+/// At most one thread a processor; more would only wait. A note reports the limit.
+fn at_most_all(threads: usize) -> usize {
+    let all = std::thread::available_parallelism().map_or(threads, usize::from);
+    if threads > all {
         let processors = counted(all as u64, "processor", "processors");
-        say(&format!("{asked} threads were asked for; this machine has {processors}: taking {all}"));
+        say(&format!("--threads {threads} exceeds the {processors} of this machine; {all} used"));
     }
-    asked.min(all)
-}
-
-/// Where figures go.
-#[derive(Args)]
-pub struct ReportArgs {
-    /// Folder for CSV files and SVG pictures.
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// Print everything as one JSON object.
-    #[arg(long)]
-    pub json: bool,
+    threads.min(all)
 }

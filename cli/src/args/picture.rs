@@ -1,17 +1,17 @@
-//! What `picture` takes.
+//! The arguments of `picture`.
 
-use super::DetectArgs;
+use super::{DetectArgs, OUTPUT};
 use clap::builder::{StringValueParser, TypedValueParser};
 use clap::{Arg, Args, ValueEnum};
 use nearmiss::error::Error;
 use std::path::Path;
 
-/// What fills the picture.
+/// The part of the scene that fills the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Around {
     /// All bodies.
     All,
-    /// What is red or orange; all bodies where nothing is.
+    /// Triangles in contact, or all bodies if there are none.
     Contacts,
 }
 
@@ -23,34 +23,60 @@ const SIDES: [usize; 2] = [16, 8192];
 pub struct PictureArgs {
     #[command(flatten)]
     pub detect: DetectArgs,
-    /// Width and height in pixels, each from 16 to 8192.
-    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1200x900", allow_hyphen_values = true, value_parser = size())]
+    #[command(flatten, next_help_heading = OUTPUT)]
+    pub look: LookArgs,
+}
+
+/// How the bodies are seen.
+#[derive(Args)]
+pub struct LookArgs {
+    /// Set width and height in pixels, each from 16 to 8192
+    #[arg(long, value_name = "WxH", default_value = "1200x900", allow_hyphen_values = true, value_parser = size())]
     pub size: [usize; 2],
-    /// From where one looks: a direction from the middle of the bodies, of any length.
-    #[arg(long, value_name = "X,Y,Z", default_value = "4,-7,3.5", allow_hyphen_values = true, value_parser = direction())]
+    /// Look from this direction, of any length
+    ///
+    /// It points from the middle of the bodies to the viewer.
+    #[arg(long, value_name = "X,Y,Z", default_value = "4,-7,3.5", allow_hyphen_values = true,
+        value_parser = direction())]
     pub view: [f64; 3],
-    /// Which direction is up in the picture, of any length.
-    #[arg(long, value_name = "X,Y,Z", default_value = "0,0,1", allow_hyphen_values = true, value_parser = direction())]
+    /// Draw this direction upwards, of any length
+    #[arg(long, value_name = "X,Y,Z", default_value = "0,0,1", allow_hyphen_values = true,
+        value_parser = direction())]
     pub up: [f64; 3],
-    /// What fills the picture.
-    #[arg(long, value_enum, default_value_t = Around::All)]
+    /// Fill the picture with all bodies, or with the contacts
+    #[arg(long, value_name = "WHAT", value_enum, default_value_t = Around::All, hide_possible_values = true,
+        long_help = super::help::listed("Fill the picture with all bodies, or with the contacts", &["all", "contacts"]))]
     pub around: Around,
-    /// When the bodies are where they are drawn: 0 at the start of the step, 1 at its end.
+    /// Draw the bodies at this time of the step, from 0 to 1
     #[arg(long, value_name = "T", default_value_t = 0.0, allow_negative_numbers = true, value_parser = part())]
     pub time: f64,
 }
 
 /// Options of `detect` that a picture refuses.
-pub const IDLE: [&str; 9] =
-    ["repeat", "only", "earliest", "json", "geometry", "out_mesh", "file_faces", "rebuild", "rebuild_every"];
+pub const IDLE: [&str; 10] = [
+    "repeat",
+    "only",
+    "earliest",
+    "json",
+    "verbose",
+    "geometry",
+    "out_mesh",
+    "file_faces",
+    "rebuild",
+    "rebuild_every",
+];
 
 /// An option of `detect`, as a picture has it.
 fn of_picture(option: Arg) -> Arg {
-    let about = "Where to write the picture (.png): all bodies as they are at --time. Triangles that meet, or have a vertex or an edge that \
-                 does, are red, those of undecided contacts alone orange; all others have a colour a body, of a body alone a colour a \
-                 connected part.";
     match option.get_id().as_str() {
-        "out" => option.required(true).help(about),
+        "out" => option
+            .required(true)
+            .help("Write the picture (.png): all bodies at --time, contacts in red")
+            .long_help(
+                "Write the picture (.png): all bodies at --time, contacts in red\n\nTriangles are red if they, one of \
+                 their vertices or one of their edges are in contact. They are orange if all their contacts are \
+                 undecided. Each body has a colour of its own, and so has each connected part of a body alone.",
+            ),
         idle if IDLE.contains(&idle) => option.hide(true),
         _ => option,
     }
@@ -64,8 +90,8 @@ pub fn check(path: &Path) -> Result<(), Error> {
     match path.extension() {
         Some(extension) if extension.eq_ignore_ascii_case("png") => Ok(()),
         _ => Err(Error::InvalidArgument {
-            what: format!("{}: a picture cannot be written in that format", path.display()),
-            advice: "give --out a name that ends in .png".into(),
+            what: format!("--out must end in .png, got {}", path.display()),
+            advice: "rename the picture".into(),
         }),
     }
 }
@@ -87,7 +113,7 @@ fn part() -> impl TypedValueParser<Value = f64> {
     })
 }
 
-/// Three finite numbers that are not all 0, made of length 1.
+/// Three finite numbers, divided by the largest, which is not 0.
 fn direction() -> impl TypedValueParser<Value = [f64; 3]> {
     StringValueParser::new().try_map(|text: String| {
         let numbers: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
@@ -96,7 +122,7 @@ fn direction() -> impl TypedValueParser<Value = [f64; 3]> {
         let largest = numbers.map_or(0.0, |all| all.iter().fold(0.0f64, |most, x| most.max(x.abs())));
         let whole = numbers.filter(|all| all.iter().all(|x| x.is_finite()) && largest > 0.0);
         whole
-            .map(|all| crate::picture::unit(all.map(|x| x / largest)))
+            .map(|all| all.map(|x| x / largest))
             .ok_or("give three numbers that are not all 0, such as 4,-7,3.5")
     })
 }

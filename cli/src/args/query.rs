@@ -1,140 +1,67 @@
-//! From options to a query: options that a kind of question, or its solver, does not have are refused.
+//! Options that choose the query and its meshes.
 
-use super::DetectArgs;
-use crate::report::Format;
-use nearmiss::error::Error;
-use nearmiss::query::{
-    Certified, Continuous, ContinuousSolver, Discrete, Distance, Earliest, Near, Query, QueryKind, Rebuild,
-    Search, Solver, TriangleTest,
-};
-use nearmiss::scene::CollisionFilter;
+use super::number::whole;
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use nearmiss_lab::scene::NAMES;
+use std::path::PathBuf;
 
-impl DetectArgs {
-    /// Which bodies a mesh of the command line may meet.
-    pub fn filter(&self) -> CollisionFilter {
-        if self.no_self_contact {
-            CollisionFilter::without_self_collision()
-        } else {
-            CollisionFilter::default()
-        }
-    }
-
-    /// The query for bodies that move, or do not.
+#[derive(Args)]
+pub struct QueryArgs {
+    /// Find triangles that share a point at t = 0 [default of one frame]
+    #[arg(long, conflicts_with_all = ["continuous", "earliest"])]
+    pub discrete: bool,
+    /// Find features that meet in the step, and when [default of two]
     ///
-    /// # Errors
-    /// [`Error::InvalidArgument`] for options that do not go together, and for numbers that mean nothing.
-    pub fn query(&self, moving: bool) -> Result<Query, Error> {
-        let (kind, near) = self.kind(moving);
-        let solver = self.solver.unwrap_or(Solver::default_for(kind));
-        if !solver.answers(kind) {
-            let known: Vec<_> = kind.solvers().iter().map(|solver| solver.name()).collect();
-            return Err(Error::InvalidArgument {
-                what: format!("the solver {solver:?} does not answer a {kind:?} query"),
-                advice: format!("choose one of: {}", known.join(", ")),
-            });
-        }
-        if self.assume_free && kind.is_at_rest() {
-            return Err(Error::InvalidArgument {
-                what: format!("--assume-free would do nothing: a {kind} query has no step"),
-                advice: "leave it out, or ask with --continuous or --earliest".into(),
-            });
-        }
-        let limits = self.tolerance.is_some() || self.boxes.is_some() || self.separation.is_some();
-        if limits && !solver.is_certified() {
-            return Err(Error::InvalidArgument {
-                what: format!("the solver {solver:?} takes no tolerance, no budget and no separation"),
-                advice: "give these to a certified solver".into(),
-            });
-        }
-        let traversal = self.traversal.map(|walk| walk.choice(self));
-        let search = Search {
-            broad: self.broad,
-            bv: self.bv,
-            refit: self.refit,
-            traversal,
-            order: self.order,
-            // Every so many frames, and at no other.
-            rebuild: self.rebuild.or(self.rebuild_every.map(|_| Rebuild::Manual)),
-        };
-        let query: Query = match (near, ContinuousSolver::named(solver)) {
-            _ if self.distance => Distance { search }.into(),
-            (Some(distance), _) => Near { distance, search }.into(),
-            (None, Some(solver)) => {
-                let (solver, assume_free) = (self.limited(solver), self.assume_free);
-                if kind == QueryKind::Earliest {
-                    Earliest { solver, search, assume_free }.into()
-                } else {
-                    Continuous { solver, search, assume_free }.into()
-                }
-            }
-            (None, None) if solver == Solver::Moller => {
-                Discrete { test: TriangleTest::Moller, search }.into()
-            }
-            (None, None) => Discrete { test: TriangleTest::Exact { adjacent: self.adjacent }, search }.into(),
-        };
-        query.check()?;
-        self.places(kind)?;
-        if self.adjacent && solver != Solver::Exact {
-            return Err(Error::InvalidArgument {
-                what: "adjacent triangles are decided by exact signs only".into(),
-                advice: "ask for adjacent triangles in a discrete query with the solver exact".into(),
-            });
-        }
-        Ok(query)
-    }
-
-    /// Whether `--out` is a `.vtp`, which says where contacts are without being told to.
-    pub fn writes_vtp(&self) -> bool {
-        self.out.as_ref().is_some_and(|out| Format::of(out).is_ok_and(|of| of == Format::Vtp))
-    }
-
-    /// Refuses files of places of what has none.
-    fn places(&self, kind: QueryKind) -> Result<(), Error> {
-        let vtp = self.writes_vtp();
-        let refused = |what: &str, advice: &str| {
-            Err(Error::InvalidArgument { what: what.into(), advice: advice.into() })
-        };
-        match kind {
-            QueryKind::Discrete | QueryKind::Earliest if vtp || self.geometry => refused(
-                "a discrete query tells triangles, and an earliest one a time: neither has points",
-                "ask with --continuous or --near, or colour the mesh by --out-mesh",
-            ),
-            _ if vtp && self.geometry => {
-                refused("--geometry would do nothing: a .vtp has it always", "leave it out")
-            }
-            _ if vtp && self.file_faces => refused(
-                "--file-faces would do nothing: a .vtp tells triangles",
-                "leave it out, or write .csv",
-            ),
-            _ => Ok(()),
-        }
-    }
-
-    /// The kind of query, and the distance of a near one.
-    fn kind(&self, moving: bool) -> (QueryKind, Option<f64>) {
-        let kind = match (self.discrete, self.continuous, self.earliest) {
-            _ if self.near.is_some() => QueryKind::Near,
-            _ if self.distance => QueryKind::Distance,
-            (_, _, true) => QueryKind::Earliest,
-            (_, true, _) => QueryKind::Continuous,
-            (true, _, _) => QueryKind::Discrete,
-            _ if moving => QueryKind::Continuous,
-            _ => QueryKind::Discrete,
-        };
-        (kind, self.near)
-    }
-
-    /// The solver, with the limits that were given.
-    fn limited(&self, solver: ContinuousSolver) -> ContinuousSolver {
-        match solver {
-            ContinuousSolver::Certified(Certified { precision, .. }) => Certified {
-                precision,
-                tolerance: self.tolerance,
-                max_iterations: self.boxes,
-                min_separation: self.separation.unwrap_or(0.0),
-            }
-            .into(),
-            other => other,
-        }
-    }
+    /// Features are a vertex and a face, or two edges.
+    #[arg(long, conflicts_with = "earliest")]
+    pub continuous: bool,
+    /// Find the first time of contact: the largest safe step
+    #[arg(long)]
+    pub earliest: bool,
+    /// Find features within the distance L at t = 0, and where
+    #[arg(long, value_name = "L", allow_hyphen_values = true,
+        conflicts_with_all = ["discrete", "continuous", "earliest"])]
+    pub near: Option<f64>,
+    /// Find the distance of the two nearest bodies at t = 0, and where
+    ///
+    /// The distance is 0 only if the bodies share a point. It takes two meshes or more.
+    #[arg(long, conflicts_with_all = ["discrete", "continuous", "earliest", "near"])]
+    pub distance: bool,
+    /// Add a second mesh; give it twice for both ends of a step
+    ///
+    /// `--with B0 --with B1 A0 A1` and `A0 A1 --with B0 B1` are the same. Each mesh is tested against
+    /// itself too, unless --no-self-collision is given.
+    #[arg(long, value_name = "MESH")]
+    pub with: Vec<PathBuf>,
+    /// Test the two meshes against each other only
+    #[arg(long)]
+    pub no_self_collision: bool,
+    /// Test triangles that share a vertex too (with --discrete)
+    ///
+    /// They are reported if they meet beyond the vertices that they share.
+    #[arg(long)]
+    pub adjacent: bool,
+    /// Skip the count of triangles that cross at the start of the step
+    #[arg(long, conflicts_with_all = ["discrete", "near", "distance"])]
+    pub assume_free: bool,
+    /// Merge vertices that coincide in all frames of a mesh
+    #[arg(long)]
+    pub weld: bool,
+    /// Refuse a file with parts that would be skipped or repaired
+    #[arg(long, conflicts_with = "scene")]
+    pub strict: bool,
+    /// Test a generated scene instead of files, such as draped
+    #[arg(long, conflicts_with_all = ["meshes", "with"], value_name = "NAME", hide_possible_values = true,
+        long_help = super::help::listed("Test a generated scene instead of files", &NAMES),
+        value_parser = PossibleValuesParser::new(NAMES))]
+    pub scene: Option<String>,
+    /// Set the triangles of the generated scene [default: its own]
+    #[arg(long, requires = "scene", value_name = "N", allow_negative_numbers = true,
+        value_parser = whole::<usize>(0, u64::MAX))]
+    pub triangles: Option<usize>,
+    /// Choose the random numbers of the generated scene
+    #[arg(long, default_value_t = 1, requires = "scene", value_name = "N", allow_negative_numbers = true,
+        hide_short_help = true, value_parser = whole::<u64>(0, u64::MAX))]
+    pub seed: u64,
 }

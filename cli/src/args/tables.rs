@@ -1,35 +1,37 @@
-//! What `tables` takes.
+//! The arguments of `lab tables`.
 
 use super::number::{some, whole};
-use super::{MachineArgs, ReportArgs, choice};
+use super::{MachineArgs, RESEARCH, ReportArgs, choice, help};
+use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use nearmiss::query::{Bv, QueueShape, Traversal};
+use nearmiss_lab::tables::SCENES;
 use std::path::PathBuf;
 
-/// Figures of the thesis.
+/// Tables that are measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Table {
     /// Construction and refit.
     #[value(name = "6.12")]
     Build,
-    /// A frame: discrete and continuous, by volume, without and with a front.
+    /// A frame: discrete and continuous, by volume, with and without a front.
     #[value(name = "6.13")]
     Frame,
-    /// Where a frame's time goes.
+    /// The share of each stage in a frame.
     #[value(name = "6.14")]
     Shares,
-    /// What a front saves, by the part of a step that things move.
+    /// The savings of a front, by the length of a step.
     Front,
-    /// Scenes of many bodies: a pile of 500 balls under a cloth, and 1,000 small worlds.
+    /// Many bodies: 500 balls under a cloth, and 1,000 small worlds.
     Bodies,
-    /// Draped cloths of 10,000 to --triangles triangles, on one device and divided among --devices.
+    /// Draped cloths of up to --triangles, on one device and on --devices.
     Scale,
 }
 
 /// Sizes of work queues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Profile {
-    /// The released program's: 128 queues, evened by copying.
+    /// Sizes of the paper: 128 queues, balanced by copying.
     Gtx285,
     /// As many queues as the machine runs at once.
     Native,
@@ -54,42 +56,61 @@ impl Profile {
 }
 
 #[derive(Args)]
+#[command(next_help_heading = RESEARCH)]
 pub struct TablesArgs {
-    /// Scenes [default: all]; with --mesh, the scene of the thesis that the frames are.
-    #[arg(long, num_args = 1.., value_name = "NAME",
-        value_parser = clap::builder::PossibleValuesParser::new(nearmiss_lab::tables::SCENES.map(|scene| scene.0)))]
+    /// Choose the scenes [default: all]
+    ///
+    /// With --mesh: the scene of the paper that the frames show.
+    #[arg(long, num_args = 1.., value_name = "NAME", hide_possible_values = true,
+        long_help = scenes(), value_parser = PossibleValuesParser::new(SCENES.map(|scene| scene.0)))]
     pub scene: Vec<String>,
-    /// Triangles of a scene, about [default: as many as the thesis has].
+    /// Set the triangles of a scene, about [default: as in the paper]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<usize>(0, u64::MAX))]
     pub triangles: Option<usize>,
-    /// Frames of a scene, at least two.
-    #[arg(long, default_value_t = 8, value_name = "K", allow_negative_numbers = true, value_parser = whole::<u32>(2, 10_000))]
+    /// Set the frames of a scene
+    #[arg(long, default_value_t = 8, value_name = "K", allow_negative_numbers = true,
+        value_parser = whole::<u32>(2, 10_000))]
     pub frames: u32,
-    /// Seed of the scenes.
-    #[arg(long, default_value_t = 1, allow_negative_numbers = true, value_parser = whole::<u64>(0, u64::MAX))]
+    /// Choose the random numbers of the scenes
+    #[arg(long, default_value_t = 1, value_name = "N", allow_negative_numbers = true,
+        value_parser = whole::<u64>(0, u64::MAX))]
     pub seed: u64,
-    /// Frames of one mesh from files instead, in their order.
+    /// Read the frames of one mesh from files, in order
     #[arg(long, num_args = 2.., value_name = "FILE")]
     pub mesh: Vec<PathBuf>,
-    /// Which figures [default: 6.12, 6.13, 6.14].
-    #[arg(long, num_args = 1.., value_enum, value_name = "FIGURE")]
+    /// Choose the tables [default: 6.12, 6.13, 6.14]
+    #[arg(long, num_args = 1.., value_enum, value_name = "TABLE")]
     pub table: Vec<Table>,
-    /// Which volumes; the thesis has aabb and obb.
-    #[arg(long, num_args = 1.., value_parser = choice::<Bv>(), default_values_t = [Bv::Aabb, Bv::Obb])]
-    pub bv: Vec<Bv>,
-    /// Walk by work queues, evened between launches, and refit a launch a level, as the thesis did: with its machine's sizes,
-    /// or with this one's [default: the fastest walk and refit, without queues].
-    #[arg(long, value_enum)]
+    /// Choose the bounding volumes; the paper has aabb and obb
+    #[arg(long, num_args = 1.., value_name = "NAME", value_parser = choice::<Bv>(),
+        default_values_t = [Bv::Aabb, Bv::Obb])]
+    pub bounding_volume: Vec<Bv>,
+    /// Walk by work queues of these sizes [default: the fastest walk]
+    ///
+    /// Queues are balanced between launches, and trees are refitted level by level, as in the paper.
+    #[arg(long, value_enum, value_name = "NAME")]
     pub profile: Option<Profile>,
-    /// Of the figure `scale`: among how many devices a frame is divided. GPUs 0 to N-1 where there are so many; else the one machine
-    /// is asked share after share, each timed as if it were alone.
-    #[arg(long, default_value_t = 2, value_name = "N", allow_negative_numbers = true, value_parser = whole::<usize>(1, 64))]
+    /// Divide a frame among N devices (--table scale)
+    ///
+    /// These are GPUs 0 to N-1 if there are so many. Otherwise one machine runs the shares one after
+    /// the other, each timed on its own.
+    #[arg(long, default_value_t = 2, value_name = "N", allow_negative_numbers = true,
+        value_parser = whole::<usize>(1, 64))]
     pub devices: usize,
-    /// Build the tree anew at every N-th frame; that time is not part of a frame's [default: only at the first].
+    /// Rebuild the tree every N frames [default: at the first only]
+    ///
+    /// The time of rebuilding is not part of a frame's time.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = some::<u32>())]
     pub rebuild_every: Option<u32>,
     #[command(flatten)]
     pub machine: MachineArgs,
     #[command(flatten)]
     pub report: ReportArgs,
+}
+
+/// Help that names the scenes.
+fn scenes() -> String {
+    let about =
+        "Choose the scenes [default: all]\n\nWith --mesh: the scene of the paper that the frames show.";
+    help::listed(about, &SCENES.map(|scene| scene.0))
 }

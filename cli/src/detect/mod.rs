@@ -1,6 +1,6 @@
 //! `detect`.
 
-mod text;
+pub mod text;
 
 use crate::args::DetectArgs;
 use crate::meshes::Reader;
@@ -8,6 +8,7 @@ use crate::output::{self, Target, print, say};
 use crate::paint;
 use crate::progress::during;
 use crate::report::{self, FileFaces, Format, Report};
+use crate::rows::numbered;
 use crate::sequence::{self, Sequence, is_scene, steps};
 use nearmiss::contacts::{ContactGeometry, Contacts, Note, Rows};
 use nearmiss::error::Error;
@@ -43,16 +44,16 @@ fn body_by(files: &[PathBuf], reader: &mut Reader) -> Result<(Body, Polygons), E
             let polygons = file.polygons().clone();
             Ok((Body::deformable(file.into_mesh()), polygons))
         }
-        // `args` asks for one or two.
+        // `args` takes one or two.
         _ => Err(Error::Bug { what: format!("{} files for a mesh", files.len()) }),
     }
 }
 
-/// What the arguments ask.
+/// The query and its bodies.
 pub struct Question {
-    /// The bodies, as the first question has them.
+    /// The bodies, at the first step or frame.
     pub scene: Scene,
-    /// What is asked of them.
+    /// The query.
     pub query: Query,
     /// All frames, of a scene's file and of more than two frames.
     pub sequence: Option<Sequence>,
@@ -62,32 +63,30 @@ pub struct Question {
     pub notes: Vec<String>,
 }
 
-/// What the arguments ask: bodies are welded where that was asked.
+/// Reads the bodies and makes the query; `--weld` merges vertices.
 pub fn question(args: &DetectArgs) -> Result<Question, Error> {
-    let files = [&args.meshes, &args.with];
-    if args.scene.is_none() && !files.iter().any(|files| files.iter().any(|file| is_scene(file))) {
+    let files = [&args.meshes, &args.query.with];
+    let is_read = args.query.scene.is_none();
+    if is_read && !files.iter().any(|files| files.iter().any(|file| is_scene(file))) {
         // Before anything is read.
         let frames = files.map(Vec::len).into_iter().max().unwrap_or(1);
-        let query = args.query(frames > 1)?;
+        let query = args.to_query(frames > 1)?;
         let steps = if frames < 3 { 1 } else { Sequence::steps_of(frames, query.kind().is_at_rest()) };
         steps::check(args, steps)?;
     }
-    let mut reader = Reader::new(args.strict);
-    if args.scene.is_none()
-        && let Some(all) = during("reading", || Sequence::of(args, &mut reader))?
-    {
-        let query = args.query(all.frames > 1)?;
+    let mut reader = Reader::new(args.query.strict);
+    if is_read && let Some(all) = during("reading", || Sequence::of(args, &mut reader))? {
+        let query = args.to_query(all.frames > 1)?;
         steps::check(args, all.steps(query.kind().is_at_rest()))?;
         let scene = all.scene(query.kind().is_at_rest())?;
         let polygons = all.polygons.clone();
         return Ok(Question { scene, query, sequence: Some(all), polygons, notes: reader.notes });
     }
     let (bodies, polygons) = bodies(args, &mut reader)?;
-    let query = args.query(bodies.iter().any(Body::is_moving))?;
-    if args.scene.is_none() && query.kind().is_at_rest() && bodies.iter().any(Body::is_moving) {
+    let query = args.to_query(bodies.iter().any(Body::is_moving))?;
+    if is_read && query.kind().is_at_rest() && bodies.iter().any(Body::is_moving) {
         let kind = query.kind();
-        let note = "of two files of a mesh the first is tested, and the second not";
-        reader.notes.push(format!("{note}: a {kind} query is of the start of a step"));
+        reader.notes.push(format!("the second file is not tested: a {kind} query is about t = 0"));
     }
     Ok(Question { scene: bodies.into(), query, sequence: None, polygons, notes: reader.notes })
 }
@@ -95,25 +94,25 @@ pub fn question(args: &DetectArgs) -> Result<Question, Error> {
 /// One mesh or two, at one frame or two, and the faces of their files.
 fn bodies(args: &DetectArgs, reader: &mut Reader) -> Result<(Vec<Body>, Vec<Polygons>), Error> {
     let mut told = Vec::new();
-    match &args.scene {
+    match &args.query.scene {
         Some(name) => {
             let body = during("making the scene", || {
                 nearmiss_lab::scene::scene(
                     name,
-                    args.triangles.unwrap_or(nearmiss_lab::scene::usual(name)),
-                    args.seed,
+                    args.query.triangles.unwrap_or(nearmiss_lab::scene::usual(name)),
+                    args.query.seed,
                 )
             })?;
             told.push((body, Polygons::default()));
         }
         None => told.push(during("reading", || body_by(&args.meshes, reader))?),
     }
-    if !args.with.is_empty() {
-        told.push(during("reading", || body_by(&args.with, reader))?);
+    if !args.query.with.is_empty() {
+        told.push(during("reading", || body_by(&args.query.with, reader))?);
     }
     let (bodies, polygons): (Vec<Body>, Vec<Polygons>) = told.into_iter().unzip();
     let mut bodies: Vec<Body> = bodies.into_iter().map(|body| body.with_filter(args.filter())).collect();
-    if args.weld {
+    if args.query.weld {
         for body in &mut bodies {
             let (welded, merged) = body.weld();
             let vertices = counted(merged as u64, "vertex", "vertices");
@@ -124,10 +123,10 @@ fn bodies(args: &DetectArgs, reader: &mut Reader) -> Result<(Vec<Body>, Vec<Poly
     Ok((bodies, polygons))
 }
 
-/// Says so where the answer is not certain.
+/// Warns if the solver can miss contacts.
 pub fn promise(query: &Query) {
     if !query.solver().is_certain() {
-        say(&format!("the solver is {}", query.solver().promise()));
+        say(&format!("warning: the solver is {}", query.solver().promise()));
     }
 }
 
@@ -136,8 +135,8 @@ pub fn promise(query: &Query) {
 /// # Errors
 /// [`Error::InvalidArgument`].
 pub fn keeps(args: &DetectArgs) -> Result<(), Error> {
-    let targets = [("--out", &args.out), ("--out-mesh", &args.out_mesh)];
-    // What is not there is not read either.
+    let targets = [("--out", &args.out.out), ("--out-mesh", &args.out.out_mesh)];
+    // A file that does not exist is not read either.
     let mut there = targets
         .iter()
         .filter_map(|(option, to)| Some((*option, to.as_ref()?)))
@@ -150,14 +149,14 @@ pub fn keeps(args: &DetectArgs) -> Result<(), Error> {
     there.try_for_each(|(option, to)| output::keeps(option, to, files.iter().map(PathBuf::as_path)))
 }
 
-/// Finds contacts, writes and prints what was asked for.
+/// Runs the query; writes and prints the answer.
 pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
     keeps(args)?;
-    let target = match &args.out {
+    let target = match &args.out.out {
         Some(out) => Some((Format::of(out)?, Target::open(out)?)),
         None => None,
     };
-    let painted = match &args.out_mesh {
+    let painted = match &args.out.out_mesh {
         Some(out) => {
             paint::check(out)?;
             Some(Target::open(out)?)
@@ -172,15 +171,16 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
     let device = args.machine.open()?;
     promise(&query);
     let mut detector = during("building", || OneQuery::new(device.clone(), scene, query))?;
-    let often = if args.only.is_some() { 1 } else { args.repeat };
+    let research = &args.research;
+    let often = if research.only.is_some() { 1 } else { research.repeat };
     let (contacts, runs) = during("detecting", || repeated(&mut detector, often))?;
     let mut summary = detector.summary(&contacts);
     summary.ms = median(&runs);
-    if let Some(stage) = args.only {
-        let times = during("repeating a stage", || detector.repeat_stage(stage, args.repeat))?;
+    if let Some(stage) = research.only {
+        let times = during("repeating a stage", || detector.repeat_stage(stage, research.repeat))?;
         *summary.ms.of_mut(stage) = middle(times);
     }
-    let faces = args.file_faces.then(|| FileFaces::of(detector.scene().bodies(), &polygons));
+    let faces = args.out.file_faces.then(|| FileFaces::of(detector.scene().bodies(), &polygons));
     if let Some(all) = &sequence {
         summary.frames = all.frames;
     }
@@ -193,20 +193,25 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
     summary.notes.splice(..0, of_files.into_iter().map(|text| Note::File { text }));
     let told = Report { step: None, summary };
     if let Some((format, target)) = target {
-        let names = sequence.as_ref().and_then(|all| all.names.as_deref());
-        let geometry = geometry.as_deref().filter(|_| args.geometry || format == Format::Vtp);
-        report::write(target, format, &contacts, &told, (faces.as_ref(), names), geometry)?;
+        let names = match &sequence {
+            Some(all) => all.names.clone(),
+            None => numbered(detector.scene().bodies().len()),
+        };
+        let geometry = geometry.as_deref().filter(|_| args.out.geometry || format == Format::Vtp);
+        report::write(target, format, &contacts, &told, (faces.as_ref(), names.as_deref()), geometry)?;
     }
-    if args.json {
+    if args.out.json {
         let text = serde_json::to_string(&told).map_err(|e| Error::Bug { what: e.to_string() })?;
         print(&(text + "\n"))?;
     } else {
-        print(&text::human(&told, &contacts))?;
+        // Medians are for reading.
+        let verbose = args.out.verbose || research.repeat > 1;
+        print(&text::human(&told, &contacts, verbose))?;
     }
     Ok(ExitCode::SUCCESS)
 }
 
-/// Where contacts are, if a file wants it.
+/// The places of contacts, if a file needs them.
 ///
 /// # Errors
 /// [`Error::OutOfMemory`]; those of the device.
@@ -215,7 +220,7 @@ pub fn geometry(
     detector: &mut OneQuery,
     found: &Contacts,
 ) -> Result<Option<Vec<ContactGeometry>>, Error> {
-    let is_wanted = args.geometry || args.writes_vtp() || args.out_mesh.is_some();
+    let is_wanted = args.out.geometry || args.writes_vtp() || args.out.out_mesh.is_some();
     // Triangles and a time have none; a file of the nearest triangles takes their points from the
     // answer.
     let has_any = matches!(found.rows, Rows::Contacts(_) | Rows::Near(_));
@@ -230,7 +235,7 @@ fn repeated(detector: &mut OneQuery, repeat: u32) -> Result<(Contacts, Vec<Stage
     if repeat > 1 {
         runs.clear();
         for _ in 0..repeat {
-            // A tree built anew would forget the front.
+            // A rebuilt tree would lose the front.
             if !keeps_front {
                 detector.rebuild()?;
             }

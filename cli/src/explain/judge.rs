@@ -1,10 +1,10 @@
-//! What is right or wrong with a solver's answer, given the exact one.
+//! A solver's answer, judged by the exact one.
 
 use nearmiss_kernels::prim::inclusion::{Answer, Verdict};
 use nearmiss_lab::oracle::Toi;
 use serde::Serialize;
 
-/// What a solver says.
+/// The answer of a solver.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "says", rename_all = "kebab-case")]
 pub enum Said {
@@ -51,10 +51,10 @@ pub enum Judgement {
     FalseAlarm,
     /// It certifies a contact that there is not, or one before the first.
     FalseCertificate,
-    /// They do not meet, and it cannot tell.
-    UnresolvedApart,
-    /// They meet; it cannot tell, but its time is safe.
-    UnresolvedEarly {
+    /// They do not meet, and it cannot decide.
+    UndecidedApart,
+    /// They meet; it cannot decide, but its time is safe.
+    UndecidedEarly {
         /// By that.
         by: f64,
     },
@@ -64,7 +64,7 @@ impl From<Verdict> for Said {
     fn from(verdict: Verdict) -> Said {
         match verdict.answer() {
             Answer::Separated => Said::Apart,
-            Answer::Contact { toi, toi_upper } => Said::Certified { toi, toi_upper },
+            Answer::Contact { toi, toi_upper } => Said::Certified { toi, toi_upper: toi_upper },
             Answer::Undecided { toi, .. } => Said::Undecided { toi },
         }
     }
@@ -93,7 +93,7 @@ pub fn judge(said: &Said, exact: Option<&Toi>) -> Judgement {
         (Some(_), None) => {
             return match said {
                 Said::Certified { .. } => Judgement::FalseCertificate,
-                Said::Undecided { .. } => Judgement::UnresolvedApart,
+                Said::Undecided { .. } => Judgement::UndecidedApart,
                 _ => Judgement::FalseAlarm,
             };
         }
@@ -109,7 +109,7 @@ pub fn judge(said: &Said, exact: Option<&Toi>) -> Judgement {
         Said::Meet { .. } if toi == below || toi == above => Judgement::Right,
         _ if by > 0.0 => Judgement::Late { by },
         Said::Certified { toi_upper, .. } if exact.cmp_f64(*toi_upper).is_gt() => Judgement::FalseCertificate,
-        Said::Undecided { .. } => Judgement::UnresolvedEarly { by: -by },
+        Said::Undecided { .. } => Judgement::UndecidedEarly { by: -by },
         _ if toi == below => Judgement::Right,
         _ => Judgement::Early { by: -by },
     }
@@ -154,14 +154,14 @@ mod tests {
             (Said::Apart, Judgement::Right),
             (meet(0.5), Judgement::FalseAlarm),
             (sure(0.5, 1.0), Judgement::FalseCertificate),
-            (open(0.5), Judgement::UnresolvedApart),
+            (open(0.5), Judgement::UndecidedApart),
         ] {
             assert_eq!(judge(&said, none.as_ref()), expected, "{said:?}");
         }
         let off = |said: Said| match judge(&said, hit.as_ref()) {
             Judgement::Late { by } => ("late", by),
             Judgement::Early { by } => ("early", by),
-            Judgement::UnresolvedEarly { by } => ("undecided", by),
+            Judgement::UndecidedEarly { by } => ("undecided", by),
             other => panic!("{said:?}: {other:?}"),
         };
         for (said, name, by) in [
@@ -175,7 +175,7 @@ mod tests {
             let found = off(said);
             assert!(found.0 == name && (found.1 - by).abs() < 1e-15, "{said:?}: {found:?}");
         }
-        // What is proven may not be late by one unit in the last place.
+        // A proven time may not be late by one unit in the last place.
         assert_eq!(off(sure(third.next_up(), 1.0)).0, "late");
     }
 }

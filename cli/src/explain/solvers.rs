@@ -1,4 +1,4 @@
-//! The solvers, each asked the one question, by the functions that the kernels call.
+//! The solvers, run on one pair by the functions that the kernels call.
 
 use super::judge::Said;
 use super::subject::{Moving, Still};

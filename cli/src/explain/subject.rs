@@ -1,6 +1,6 @@
-//! What is asked about: from meshes, from a file of queries, or from numbers.
+//! The pair: from meshes, from a file of queries, or from numbers.
 
-use super::{Between, ExplainArgs};
+use crate::args::{Between, ExplainArgs};
 use crate::detect::body;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Positions, Problem, Topology};
@@ -23,12 +23,12 @@ pub enum Subject {
 
 /// Two features that move.
 pub struct Moving {
-    /// Where they are from, in words.
+    /// Their origin, in words.
     pub of: [String; 2],
     pub case: Case,
     /// Solvers are given positions in f32, which hold them exactly.
     pub single: bool,
-    /// What else there is to know.
+    /// Notes.
     pub notes: Vec<String>,
     pub params: Params,
 }
@@ -70,23 +70,22 @@ pub fn of(args: &ExplainArgs) -> Result<Subject, Error> {
     }
     let (of, corners, features) = if let Some((v, f)) = pair(&args.vf) {
         ([named("vertex", v, a), named("face", f, b)], [vertex(a, v)?, face(b, f)?], Features::VertexFace)
-    } else if let Some((f, v)) = pair(&args.fv) {
-        ([named("vertex", v, b), named("face", f, a)], [vertex(b, v)?, face(a, f)?], Features::VertexFace)
     } else if let Some((i, j)) = pair(&args.ee) {
         ([named("edge", i, a), named("edge", j, b)], [edge(a, i)?, edge(b, j)?], Features::EdgeEdge)
     } else {
-        // clap asks for one of them.
-        return Err(Error::Bug { what: "a question about nothing".into() });
+        // clap requires one of them.
+        return Err(Error::Bug { what: "a pair without features".into() });
     };
-    let owners = if args.fv.is_some() { [b, a] } else { [a, b] };
     let at = |end: bool| -> Result<Vec<[f64; 3]>, Error> {
-        let points =
-            owners.iter().zip(&corners).flat_map(|(body, ids)| ids.iter().map(|v| point(body, *v, end)));
+        let points = [a, b]
+            .into_iter()
+            .zip(&corners)
+            .flat_map(|(body, ids)| ids.iter().map(move |v| point(body, *v, end)));
         points.collect()
     };
     let mut notes = Vec::new();
     if self_query && corners[0].iter().any(|v| corners[1].contains(v)) {
-        notes.push("they share a vertex: detect does not ask about such pairs".to_owned());
+        notes.push("they share a vertex: detect does not test such pairs".to_owned());
     }
     let case = Case { features, positions_t0: four(at(false)?)?, positions_t1: four(at(true)?)? };
     let single = bodies.iter().all(is_single);
@@ -95,16 +94,16 @@ pub fn of(args: &ExplainArgs) -> Result<Subject, Error> {
 
 fn params(args: &ExplainArgs, default: f64) -> Params {
     let tolerance = args.tolerance.unwrap_or(default);
-    Params { max_iterations: args.boxes.unwrap_or(Certified::MAX_ITERATIONS), ..Params::new(tolerance) }
+    Params {
+        max_iterations: args.max_iterations.unwrap_or(Certified::MAX_ITERATIONS),
+        ..Params::new(tolerance)
+    }
 }
 
 fn from_file(args: &ExplainArgs, path: &Path, row: usize) -> Result<Subject, Error> {
     let features =
         args.between.map(features).or(file::features(path)).ok_or_else(|| Error::InvalidArgument {
-            what: format!(
-                "{}: no folder called vertex-face or edge-edge says what it is about",
-                path.display()
-            ),
+            what: format!("--queries needs the kind of its features, got {}", path.display()),
             advice: "give --between vf or --between ee".into(),
         })?;
     let queries = file::queries(path, features)?;
@@ -112,13 +111,19 @@ fn from_file(args: &ExplainArgs, path: &Path, row: usize) -> Result<Subject, Err
         file: path.display().to_string(),
         problem: Problem::NoSuch { what: "query", index: row as u64, count: queries.len() as u64 },
     })?;
-    let notes = vec![format!("the file says that they {}", if truth { "meet" } else { "do not meet" })];
+    let notes = vec![format!("by the file they {}", if truth { "meet" } else { "do not meet" })];
     let of = format!("query {row} of {}", path.display());
     let of = parts(features).map(|part| format!("{part} of {of}"));
     Ok(Subject::Moving(Moving { of, case, single: false, notes, params: params(args, TOLERANCE) }))
 }
 
 fn from_numbers(args: &ExplainArgs, points: &[f64]) -> Result<Subject, Error> {
+    if points.len() != 24 {
+        return Err(Error::InvalidArgument {
+            what: format!("--points takes 24 numbers, got {}", points.len()),
+            advice: "give x, y, z of four points at t = 0, then at t = 1".into(),
+        });
+    }
     if let Some(bad) = points.iter().position(|x| !x.is_finite()) {
         let (vertex, axis) = (bad / 3, ['x', 'y', 'z'][bad % 3]);
         let problem = Problem::NonFinite { vertex, axis, value: points[bad] };
@@ -152,7 +157,7 @@ fn triangles(a: &Body, b: &Body, self_query: bool, [i, j]: [u32; 2]) -> Result<S
     let mut notes = Vec::new();
     if shared != Shared::Nothing {
         notes.push(
-            "they share corners: asked is whether they meet beyond them, as detect --adjacent does"
+            "they share corners: the test is whether they meet beyond them, as detect --adjacent does"
                 .to_owned(),
         );
     }

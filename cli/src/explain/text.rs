@@ -49,7 +49,7 @@ struct Row {
     #[serde(flatten)]
     judgement: Judgement,
     #[serde(skip_serializing_if = "Option::is_none")]
-    boxes: Option<u32>,
+    iterations: Option<u32>,
 }
 
 /// The report on features that move.
@@ -65,7 +65,7 @@ pub fn moving(asked: &Moving, answers: &[Answer]) -> Report {
         solver: a.solver,
         said: a.said,
         judgement: judge(&a.said, toi.as_ref()),
-        boxes: a.boxes,
+        iterations: a.boxes,
     };
     Report {
         features,
@@ -100,7 +100,7 @@ pub fn still(asked: &Still, answers: &[(&'static str, bool)]) -> Report {
             (true, false) => Judgement::FalseAlarm,
             _ => Judgement::Right,
         },
-        boxes: None,
+        iterations: None,
     };
     Report {
         features: "triangle-triangle",
@@ -174,7 +174,7 @@ fn found(judgement: &Judgement) -> String {
         Judgement::Early { by } => format!("early by {by:.2e}"),
         Judgement::FalseAlarm => "false alarm".into(),
         Judgement::FalseCertificate => "FALSE CERTIFICATE".into(),
-        Judgement::UnresolvedApart => "undecided: they never meet".into(),
-        Judgement::UnresolvedEarly { by } => format!("undecided; early by {by:.2e}"),
+        Judgement::UndecidedApart => "undecided: they never meet".into(),
+        Judgement::UndecidedEarly { by } => format!("undecided; early by {by:.2e}"),
     }
 }

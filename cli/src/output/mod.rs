@@ -1,4 +1,4 @@
-//! What the program says and writes. Nothing is lost in silence: output that cannot be written is an error.
+//! Everything that is printed and written. Output that cannot be written is an error.
 
 mod pack;
 mod place;
@@ -21,7 +21,7 @@ pub fn stdout_failed(text: &impl ToString) -> Error {
     failed(Path::new("standard output"), text)
 }
 
-/// Says something beside the answer. Where standard error cannot be written there is nobody to tell.
+/// Prints a message to standard error. A failure to do so is ignored.
 pub fn say(text: &str) {
     let _ = writeln!(std::io::stderr(), "nearmiss: {text}");
 }
@@ -84,8 +84,8 @@ pub fn keeps<'a>(option: &str, to: &Path, read: impl IntoIterator<Item = &'a Pat
     match read.into_iter().find(|from| from.canonicalize().is_ok_and(|from| from == real)) {
         None => Ok(()),
         Some(from) => Err(Error::InvalidArgument {
-            what: format!("{option} would write over {}, which is read", from.display()),
-            advice: "give it another name, and replace the file when its successor is as it should be".into(),
+            what: format!("{option} would overwrite {}, which is read", from.display()),
+            advice: "give another name".into(),
         }),
     }
 }

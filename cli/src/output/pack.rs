@@ -25,7 +25,7 @@ pub fn pack(
     written
 }
 
-/// What a packer writes into. A packer that is dropped ends its stream as if all had been put: of a failed one nothing more gets out.
+/// The target of a packer. A packer that is dropped ends its stream as if all had been put: of a failed one nothing more gets out.
 struct Gate<'a> {
     out: &'a mut dyn Write,
     shut: bool,

@@ -1,4 +1,4 @@
-//! Where a file goes: beside what is there until it is whole, or into what is open.
+//! The way to a file: a new one next to it until that is whole, or one that is open.
 
 use crate::stop::{self, Writing};
 use std::fs::{self, File, OpenOptions};
@@ -8,7 +8,7 @@ use tempfile::{Builder, NamedTempFile, PersistError};
 
 /// How a file is written.
 pub enum Way {
-    /// A new file beside it takes its place when it is whole: what was there stays until then.
+    /// A new file next to it takes its place when it is whole. Until then the old one stays.
     Beside(PathBuf),
     /// Into what is open: a device, a pipe, or a file in a folder that takes no new ones.
     Open(File),
@@ -17,7 +17,7 @@ pub enum Way {
 /// How a file can be written; nothing is made.
 ///
 /// # Errors
-/// Where it cannot.
+/// Those of the system.
 pub fn way(path: &Path) -> io::Result<Way> {
     let kind = match fs::metadata(path) {
         Ok(kind) => kind,
@@ -47,7 +47,7 @@ pub fn way(path: &Path) -> io::Result<Way> {
 /// The file that a path will name, where there is none yet: a link to nothing stays a link.
 fn named(path: &Path) -> io::Result<PathBuf> {
     let mut real = path.to_owned();
-    // Rings of links have been told by the system, which follows no more than these.
+    // The system refuses longer chains and rings of links.
     for _ in 0..40 {
         let Ok(next) = fs::read_link(&real) else { break };
         real = folder_of(&real).join(next);
@@ -68,7 +68,7 @@ fn folder_of(path: &Path) -> &Path {
 /// Whether a folder takes a new file.
 ///
 /// # Errors
-/// Where it takes none.
+/// Those of the system.
 pub fn probe(folder: &Path) -> io::Result<()> {
     temporary(folder)?.close()
 }
@@ -95,7 +95,7 @@ pub fn into(file: &File, put: impl FnOnce(&mut dyn Write) -> Result<(), String>)
         buffered(file, put)
     };
     written.and_then(|()| keep(&File::sync_all).map_err(text)).inspect_err(|_| {
-        // The first error is told.
+        // The first error is reported.
         let _ = clear();
     })
 }

@@ -55,7 +55,7 @@ impl Camera {
         camera
     }
 
-    /// A point, told from the middle of all bodies in their longest sides.
+    /// A point from the middle of all bodies, in units of their longest side.
     fn near_origin(&self, point: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|k| (point[k] - self.middle[k]) / self.side)
     }
@@ -65,7 +65,7 @@ impl Camera {
         self.axes.map(|axis| dot(axis, of))
     }
 
-    /// Where a point is: pixels from the left, pixels from the top, and pixels towards the one who looks.
+    /// The place of a point: pixels from the left, from the top, and towards the viewer.
     pub fn place(&self, point: [f64; 3]) -> [f64; 3] {
         let [x, y, z] = self.turned(self.near_origin(point));
         let [right, up, near] = scaled([x - self.centre[0], y - self.centre[1], z], self.scale);

@@ -4,7 +4,7 @@ use super::camera::Camera;
 use super::raster::{self, Canvas, Corner, FINE, Sides};
 use super::shade::{INK, PAPER, lit, normals};
 
-/// What is drawn.
+/// The scene of a picture.
 pub struct Picture<'a> {
     pub points: &'a [[f64; 3]],
     pub faces: &'a [[u32; 3]],
@@ -45,7 +45,7 @@ impl Picture<'_> {
         let normals = normals(self.points, self.faces);
         let sides = self.sides(&places);
         let mut canvas = Canvas::new(size, PAPER);
-        // What meets comes first: where two lie in one place, it is seen.
+        // Triangles in contact come first, so that they are seen if two lie in one place.
         let mut is_met = vec![false; self.faces.len()];
         self.met.iter().for_each(|triangle| is_met[*triangle as usize] = true);
         for now in [true, false] {

@@ -1,4 +1,4 @@
-//! Where contacts are, as lines between the nearest points of both features.
+//! Contacts as lines between the nearest points of both features.
 
 use crate::paint::starts;
 use nearmiss::contacts::{ContactGeometry, Contacts, Rows};

@@ -22,13 +22,13 @@ use nearmiss_lab::OneQuery;
 use std::io::Write;
 use std::process::ExitCode;
 
-/// Asks a frame, draws it, and says what there is to see.
+/// Runs the query, draws the frame, and prints the colours.
 ///
 /// # Errors
 /// [`Error::InvalidArgument`] for a name that is not of a PNG, for several steps, and for a time of a frame at rest; [`Error::Output`] for a file that
 /// cannot be written; [`Error::OutOfMemory`] before the picture is drawn; those of the question and the machine.
 pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
-    let Some(out) = &args.detect.out else {
+    let Some(out) = &args.detect.out.out else {
         return Err(Error::Bug { what: "a picture without --out".into() });
     };
     check(out)?;
@@ -38,17 +38,15 @@ pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
     notes.iter().for_each(|note| say(note));
     let steps = sequence.map_or(1, |all| all.steps(query.kind().is_at_rest()));
     if steps > 1 {
-        let what = format!("{steps} steps or frames: a picture shows one");
-        let advice = "give the meshes of one frame, or of both ends of one step".into();
+        let what = format!("a picture shows one step or frame, got {steps}");
+        let advice = "give one mesh, or both ends of a step".into();
         return Err(Error::InvalidArgument { what, advice });
     }
-    if args.time > 0.0 && query.kind().is_at_rest() {
-        let what = "--time would do nothing: what is asked is of a frame at rest".into();
-        return Err(Error::InvalidArgument {
-            what,
-            advice: "leave it out, or ask what meets in a step".into(),
-        });
+    if args.look.time > 0.0 && query.kind().is_at_rest() {
+        let what = format!("--time has no effect: a {} query is about t = 0", query.kind());
+        return Err(Error::InvalidArgument { what, advice: "remove it, or use --continuous".into() });
     }
+    let look = &args.look;
     let device = args.detect.machine.open()?;
     promise(&query);
     let mut detector = during("building", || OneQuery::new(device, scene, query))?;
@@ -59,8 +57,8 @@ pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
     };
     let bodies = detector.scene().bodies();
     let triangles: usize = bodies.iter().map(|body| body.faces().len()).sum();
-    memory::require("the picture", draw::bytes(args.size, triangles))?;
-    let (mesh, mut colours) = paint::paint(bodies, args.time, &found, &geometry)?;
+    memory::require("the picture", draw::bytes(look.size, triangles))?;
+    let (mesh, mut colours) = paint::paint(bodies, look.time, &found, &geometry)?;
     let [red, orange] = [RED, ORANGE].map(|of| colours.iter().filter(|colour| **colour == of).count());
     let points = mesh.positions().to_f64();
     let marks = marks::of(bodies, &points, &found, &geometry);
@@ -71,11 +69,11 @@ pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
     free.for_each(|(colour, own)| *colour = own);
     let picture =
         Picture { points: &points, faces: mesh.faces(), colours: &colours, met: &met, marks: &marks };
-    let framed = args.around == Around::Contacts;
-    let pixels = during("drawing", || picture.draw([args.view, args.up], args.size, framed));
-    target.write(|out| encode(out, args.size, &pixels).map_err(|e| e.to_string()))?;
+    let framed = look.around == Around::Contacts;
+    let pixels = during("drawing", || picture.draw([look.view, look.up].map(unit), look.size, framed));
+    target.write(|out| encode(out, look.size, &pixels).map_err(|e| e.to_string()))?;
     let of = counted(triangles as u64, "triangle", "triangles");
-    let [width, height] = args.size;
+    let [width, height] = look.size;
     print(&format!("{}: {width}x{height}, {of}, {red} red, {orange} orange\n", out.display()))?;
     Ok(ExitCode::SUCCESS)
 }
@@ -106,7 +104,7 @@ fn scaled(of: [f64; 3], by: f64) -> [f64; 3] {
 }
 
 /// A vector made of length 1; zeros of none.
-pub fn unit(of: [f64; 3]) -> [f64; 3] {
+fn unit(of: [f64; 3]) -> [f64; 3] {
     let length = dot(of, of).sqrt();
     if length > 0.0 { of.map(|x| x / length) } else { [0.0; 3] }
 }

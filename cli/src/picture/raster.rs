@@ -66,7 +66,7 @@ impl Canvas {
                 let point = [column, row].map(|x| x * PARTS as i64 + PARTS as i64 / 2);
                 [0, 1, 2].map(|k| doubled(point, at[(k + 1) % 3], at[(k + 2) % 3]) * area.signum())
             };
-            // It grows by the same from column to column: so those within are told from the first two.
+            // It grows by the same from column to column: so those within follow from the first two.
             let (first, second) = (parts(0), parts(1));
             let mut within = columns.clone();
             for (start, next) in first.into_iter().zip(second) {
@@ -123,7 +123,7 @@ impl Canvas {
                 }
                 let index = row * self.size[0] + column;
                 let depth = from[2] + part * (to[2] - from[2]);
-                // What lies on a surface is not behind it.
+                // A line on a surface is not behind it.
                 let hidden = f64::from(self.depths[index]) > depth + 2.0 * radius + 1.0;
                 let opaque = if hidden { 0.25 } else { 1.0 };
                 let under = self.colours[index];

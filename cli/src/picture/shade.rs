@@ -6,12 +6,12 @@ use super::{cross, dot, unit};
 use nearmiss::mesh::Body;
 use std::collections::HashMap;
 
-/// What is not looked at as white, so that white is left for a page around.
+/// The paper, almost white: white is left for a page around.
 pub const PAPER: Colour = [0.965, 0.97, 0.975];
 /// Points and lines of contacts.
 pub const INK: Colour = [0.08, 0.09, 0.13];
 
-/// Colours that are neither red nor orange, and are told apart by lightness too.
+/// Colours that are neither red nor orange, and differ in lightness too.
 const BODIES: [[u8; 3]; 6] =
     [[132, 164, 204], [226, 212, 182], [150, 192, 164], [182, 168, 208], [118, 176, 186], [196, 200, 206]];
 

@@ -1,7 +1,7 @@
-//! What kernels append to their lists, on a machine and on the CPU, counted.
+//! Rows that kernels append to their lists, counted on a machine and on the CPU.
 //!
 //! Lanes that are not together lose what they append, or append it to another's place, while each lane's own verdict is
-//! right; no comparison of verdicts in small scenes notices. The grids on which that was seen are asked here, several times.
+//! right; no comparison of verdicts in small scenes notices. The grids on which that was seen run here, several times.
 
 use nearmiss::device::Device;
 use nearmiss::error::Error;
@@ -14,20 +14,20 @@ use rand::rngs::SmallRng;
 
 /// Pairs of a grid: no multiple of a block, and many blocks.
 const PAIRS: usize = 22_501;
-/// How often a machine is asked.
+/// Runs on a machine.
 const TIMES: usize = 4;
 /// Built contacts of a kind; and their reach.
 const BUILT: (usize, i64) = (200, 64);
 
 /// A line for the table, and what differs.
 pub struct Report {
-    /// What was asked.
+    /// The runs.
     pub table: String,
     /// Each difference.
     pub faults: Vec<String>,
 }
 
-/// What of the answers to triangle pairs is wrong: the first difference, or entries that are not one a pair.
+/// The fault of the answers to triangle pairs: the first difference, or a wrong number of entries.
 fn fault(found: &TriangleAnswers, truth: &TriangleAnswers) -> Option<String> {
     let meet = found.meet.iter().filter(|meet| **meet).count() as u64;
     if found.listed != meet {

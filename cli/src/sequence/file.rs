@@ -8,17 +8,17 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use toml::{Spanned, Table, Value};
 
-/// What a file says of a body.
+/// A body as a file describes it.
 pub struct Described {
     /// Its own, or its first mesh's.
     pub name: String,
     /// A mesh a frame, or one.
     pub meshes: Vec<PathBuf>,
-    /// What it does.
+    /// Its kind.
     pub kind: BodyKind,
     /// A pose a frame, or one, or none.
     pub poses: Vec<Pose>,
-    /// What it meets.
+    /// Its filter.
     pub meets: CollisionFilter,
     /// How messages call it: its name, and the line at which it begins.
     pub called: String,
@@ -49,7 +49,7 @@ struct BodyTable {
 #[derive(Clone, Copy, Default, Deserialize)]
 #[serde(rename_all = "lowercase")]
 enum Kind {
-    Static,
+    Fixed,
     Rigid,
     #[default]
     Deformable,
@@ -71,7 +71,7 @@ fn no_rotation() -> [f64; 4] {
 /// Most bytes of memory that a byte of a file takes: arrays of short numbers take most.
 const MULTIPLE: u64 = 64;
 
-/// What does not belong in a scene, as an error that names its file.
+/// A fault of a scene, as an error that names its file.
 pub fn wrong(file: &Path, what: impl Into<String>, advice: impl Into<String>) -> Error {
     let problem = Problem::Scene { what: what.into(), advice: advice.into() };
     Error::Input { file: file.display().to_string(), problem }
@@ -87,10 +87,10 @@ pub fn read(path: &Path) -> Result<Vec<Described>, Error> {
     let line = |at: usize| 1 + ends.partition_point(|end| *end < at);
     let whole: Whole = toml::from_str(&text).map_err(|e| {
         let place = e.span().map_or(String::new(), |span| format!("line {}: ", line(span.start)));
-        wrong(path, format!("{place}{}", e.message()), "a scene is tables [[body]] of TOML")
+        wrong(path, format!("{place}{}", e.message()), "a scene has one table [[body]] for each body")
     })?;
     if whole.body.is_empty() {
-        return Err(wrong(path, "has no bodies", "give each a table that begins with [[body]]"));
+        return Err(wrong(path, "has no bodies", "add a table [[body]] for each"));
     }
     let count = whole.body.len();
     let mut all: Vec<Described> = Vec::with_capacity(count);
@@ -99,7 +99,7 @@ pub fn read(path: &Path) -> Result<Vec<Described>, Error> {
         let body = described(path, line(table.span().start), table.into_inner())?;
         if let Some(other) = names.insert(body.name.clone(), all.len()) {
             let what = format!("{} has the name of {}", body.called, all[other].called);
-            return Err(wrong(path, what, "give each a `name` of its own"));
+            return Err(wrong(path, what, "give each body its own `name`"));
         }
         all.push(body);
     }
@@ -122,35 +122,38 @@ fn described(path: &Path, line: usize, table: Table) -> Result<Described, Error>
     };
     let bad = |what: &str, advice: &str| wrong(path, format!("{called}: {what}"), advice);
     let table: BodyTable = table.try_into().map_err(|e: toml::de::Error| {
-        // Where in the table it is follows on a line of its own.
+        // The place in the table is on a line of its own.
         bad(e.to_string().trim().replace('\n', ", ").as_str(), "docs/cli.md lists the keys and their values")
     })?;
     let meshes = match (table.mesh, table.meshes) {
         (Some(mesh), None) => vec![mesh],
         (None, Some(meshes)) if !meshes.is_empty() => meshes,
-        (None, Some(_)) => return Err(bad("`meshes` is empty", "name a file a frame, or one with `mesh`")),
-        (Some(_), Some(_)) => return Err(bad("both `mesh` and `meshes`", "give one of them")),
+        (None, Some(_)) => return Err(bad("`meshes` is empty", "name one file per frame, or use `mesh`")),
+        (Some(_), Some(_)) => {
+            return Err(bad("`mesh` and `meshes` exclude each other", "remove one of them"));
+        }
         (None, None) => {
-            return Err(bad("no `mesh`", "name a file with `mesh`, or a file a frame with `meshes`"));
+            return Err(bad("`mesh` is missing", "name a file with `mesh`, or one per frame with `meshes`"));
         }
     };
     let kind = match table.kind {
-        Kind::Static => BodyKind::Fixed,
+        Kind::Fixed => BodyKind::Fixed,
         Kind::Rigid => BodyKind::Rigid,
         Kind::Deformable => BodyKind::Deformable,
     };
     if meshes.len() > 1 && kind != BodyKind::Deformable {
-        let what = format!("{} `meshes` of a body that is {}", meshes.len(), name_of(kind));
-        return Err(bad(&what, "give it one with `mesh`, or make it deformable"));
+        let what =
+            format!("`meshes` must name one file if the body is {}, got {}", name_of(kind), meshes.len());
+        return Err(bad(&what, "use `mesh`, or make the body deformable"));
     }
     let poses = match table.poses {
         None => Vec::new(),
         Some(_) if kind != BodyKind::Rigid => {
-            let what = format!("`poses` of a body that is {}", name_of(kind));
-            return Err(bad(&what, "leave them out, or make it rigid"));
+            let what = format!("`poses` cannot be used if the body is {}", name_of(kind));
+            return Err(bad(&what, "remove them, or make the body rigid"));
         }
         Some(poses) if poses.is_empty() => {
-            return Err(bad("`poses` is empty", "give one a frame, or one, or leave it out"));
+            return Err(bad("`poses` is empty", "give one, or one per frame, or remove it"));
         }
         Some(poses) => {
             let of = |pose: PoseTable| Pose { rotation: pose.rotation, translation: pose.translation };
@@ -162,14 +165,17 @@ fn described(path: &Path, line: usize, table: Table) -> Result<Described, Error>
         Some(Value::String(all)) if all == "all" => None,
         Some(Value::Integer(number)) if u32::try_from(*number).is_ok() => Some(*number as u32),
         Some(other) => {
-            let what = format!("`environment` is {}", shown(other));
-            return Err(bad(&what, "give a number from 0 to 4294967295, or \"all\""));
+            let what = format!(
+                "`environment` must be a number from 0 to 4294967295 or \"all\", got {}",
+                shown(other)
+            );
+            return Err(bad(&what, "correct it"));
         }
     };
     let (group, mask) = (table.group.unwrap_or(u32::MAX), table.mask.unwrap_or(u32::MAX));
     if kind == BodyKind::Fixed && table.self_collision == Some(true) {
-        let what = "`self_collision` of a body that is static, which never meets itself";
-        return Err(bad(what, "leave it out, or make the body rigid or deformable"));
+        let what = "`self_collision` is true, and a fixed body never collides with itself";
+        return Err(bad(what, "remove it, or make the body rigid or deformable"));
     }
     let self_collision = table.self_collision;
     let stem = || crate::stem(&meshes[0]);
@@ -182,7 +188,7 @@ fn described(path: &Path, line: usize, table: Table) -> Result<Described, Error>
 /// As a file names it.
 fn name_of(kind: BodyKind) -> &'static str {
     match kind {
-        BodyKind::Fixed => "static",
+        BodyKind::Fixed => "fixed",
         BodyKind::Rigid => "rigid",
         _ => "deformable",
     }

@@ -8,6 +8,7 @@ pub use file::text as read_text;
 use crate::args::DetectArgs;
 use crate::meshes::Reader;
 use crate::output::say;
+use crate::rows::numbered;
 use file::{Described, wrong};
 use nearmiss::error::Error;
 use nearmiss::memory;
@@ -18,7 +19,7 @@ use nearmiss_io::{MeshFile, Polygons};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-/// Where a body is, frame by frame; of one entry it rests.
+/// The places of a body, frame by frame. A body with one entry rests.
 enum Track {
     /// A deformable body, or a static one.
     Positions(Vec<Positions>),
@@ -46,7 +47,7 @@ impl Track {
     }
 }
 
-/// What files say of a body.
+/// A body as its files describe it.
 struct Told {
     body: Body,
     track: Track,
@@ -58,11 +59,11 @@ pub struct Sequence {
     /// Each as it is at the first frame.
     bodies: Vec<Body>,
     tracks: Vec<Track>,
-    /// Of each the faces of its file behind its triangles.
+    /// The faces of each file behind its triangles.
     pub polygons: Vec<Polygons>,
     /// How many frames there are: at least one.
     pub frames: usize,
-    /// Of a file of a scene the bodies' names, by which rows tell them.
+    /// The names of the bodies in rows: those of a scene file, or numbers of several.
     pub names: Option<Vec<String>>,
 }
 
@@ -71,9 +72,10 @@ pub fn is_scene(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
 }
 
-/// All files that the arguments name, and those that a scene names. What cannot be read is told where it is read.
+/// All files that the arguments name, and those that a scene names. A scene that cannot be read is an
+/// error later, when it is read.
 pub fn files(args: &DetectArgs) -> HashSet<PathBuf> {
-    let named: Vec<&PathBuf> = args.meshes.iter().chain(&args.with).collect();
+    let named: Vec<&PathBuf> = args.meshes.iter().chain(&args.query.with).collect();
     let scenes = named.iter().filter(|path| is_scene(path));
     let meshes = scenes.flat_map(|path| {
         let bodies = file::read(path).unwrap_or_default();
@@ -88,19 +90,19 @@ fn folder_of(scene: &Path) -> &Path {
 }
 
 impl Sequence {
-    /// What the arguments name, where that is a file of a scene or more than two frames of a mesh.
+    /// A scene file, or more than two frames of a mesh, if the arguments name one.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] for files that do not go together; those of reading.
     pub fn of(args: &DetectArgs, reader: &mut Reader) -> Result<Option<Sequence>, Error> {
-        let own = [&args.meshes, &args.with];
+        let own = [&args.meshes, &args.query.with];
         let scenes = own.iter().flat_map(|files| files.iter()).filter(|path| is_scene(path)).count();
         let mut all = match &own {
             [files, with] if scenes > 0 => match (&files[..], &with[..]) {
                 ([file], []) => Sequence::read(file, reader)?,
                 _ => {
                     return Err(Error::InvalidArgument {
-                        what: "a scene (.toml) beside other files".into(),
+                        what: "a scene (.toml) cannot be combined with other files".into(),
                         advice: "give it alone: it names all meshes".into(),
                     });
                 }
@@ -112,10 +114,11 @@ impl Sequence {
                 for Told { body, .. } in &mut told {
                     *body = body.clone().with_filter(args.filter());
                 }
-                Sequence::new(told, None)
+                let names = numbered(told.len());
+                Sequence::new(told, names)
             }
         };
-        if args.weld {
+        if args.query.weld {
             all.weld();
         }
         Ok(Some(all))
@@ -141,7 +144,7 @@ impl Sequence {
         for body in &described {
             if let Some((most, other)) = longest.filter(|(most, _)| ![1, *most].contains(&counts(body))) {
                 let what = format!("{} has {} frames, and {other} has {most}", body.called, counts(body));
-                return Err(wrong(path, what, "give one, which rests, or as many as the others"));
+                return Err(wrong(path, what, "give one for a body at rest, or as many as the others"));
             }
         }
         let folder = folder_of(path);
@@ -179,7 +182,7 @@ impl Sequence {
         Ok(Scene::from(bodies))
     }
 
-    /// Where bodies go for a question.
+    /// The motions of the bodies for a step or frame.
     pub fn inputs<'a>(&'a self, scene: &Scene, step: usize, at_rest: bool) -> Vec<(BodyId, Motion<'a>)> {
         let inputs = self.tracks.iter().map(|track| track.input(step, at_rest));
         scene.ids().zip(inputs).filter_map(|(id, input)| input.map(|input| (id, input))).collect()
@@ -258,7 +261,7 @@ fn of_table(
     Ok(Told { body, track, polygons })
 }
 
-/// What is wrong, and what to do.
+/// The fault of an error, and its remedy.
 fn parts(error: &Error) -> (String, String) {
     let text = error.to_string();
     let (what, advice) = text.split_once("; ").unwrap_or((&text, "correct it"));

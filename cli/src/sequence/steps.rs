@@ -2,21 +2,21 @@
 
 use super::Sequence;
 use crate::args::DetectArgs;
-use crate::detect::{geometry, promise};
+use crate::detect::{geometry, promise, text};
 use crate::output::{Target, print};
 use crate::progress::during;
 use crate::report::{FileFaces, Format, Report};
 use crate::rows::{Columns, JsonRows};
 use crate::vtp::Vtp;
-use nearmiss::contacts::{ContactGeometry, Contacts, Note, Summary};
+use nearmiss::contacts::{ContactGeometry, Contacts, Note};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
-use nearmiss::query::{Query, QueryKind};
+use nearmiss::query::Query;
 use nearmiss::scene::Scene;
 use nearmiss::words::counted;
 use nearmiss_lab::OneQuery;
+use nearmiss_lab::tables::digits;
 use serde::Serialize;
-use std::fmt::Write as _;
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -34,7 +34,7 @@ impl From<Error> for Stop {
     }
 }
 
-/// Where rows go.
+/// The target of rows.
 enum Out<'a> {
     Nowhere,
     Csv(Box<csv::Writer<&'a mut dyn Write>>),
@@ -43,34 +43,35 @@ enum Out<'a> {
     Vtp(Box<Vtp>, &'a mut dyn Write),
 }
 
-/// Refuses what one question takes, and several do not.
+/// Refuses options of one step that several do not have.
 ///
 /// # Errors
 /// [`Error::InvalidArgument`].
 pub fn check(args: &DetectArgs, steps: usize) -> Result<(), Error> {
     let refused = |option: &str, why: &str| {
-        let what = format!("{option} would do nothing: {why}");
-        Err(Error::InvalidArgument { what, advice: "leave it out, or ask one step or frame".into() })
+        let what = format!("{option} has no effect: {why}");
+        Err(Error::InvalidArgument { what, advice: "remove it, or give one step or frame".into() })
     };
-    match (steps > 1, args.rebuild_every) {
-        (true, _) if args.only.is_some() => refused("--only", "each of several steps runs once"),
-        (true, _) if args.out_mesh.is_some() => Err(Error::InvalidArgument {
-            what: "--out-mesh of several steps: a file holds one mesh".into(),
-            advice: "ask one step or frame, or write contacts by --out".into(),
+    let research = &args.research;
+    match (steps > 1, research.rebuild_every) {
+        (true, _) if research.only.is_some() => refused("--only", "each of several steps runs once"),
+        (true, _) if args.out.out_mesh.is_some() => Err(Error::InvalidArgument {
+            what: format!("--out-mesh holds one step or frame, got {steps}"),
+            advice: "give one step or frame, or write contacts with --out".into(),
         }),
-        (true, _) if args.repeat > 1 => refused("--repeat", "each of several steps runs once"),
-        (false, every) if every.is_some() || args.rebuild.is_some() => {
+        (true, _) if research.repeat > 1 => refused("--repeat", "each of several steps runs once"),
+        (false, every) if every.is_some() || research.rebuild.is_some() => {
             let option = if every.is_some() { "--rebuild-every" } else { "--rebuild" };
             Err(Error::InvalidArgument {
-                what: format!("{option} would do nothing: there is one step, and its tree is new"),
-                advice: "leave it out, or give more frames".into(),
+                what: format!("{option} has no effect: the tree of the first step is new"),
+                advice: "remove it, or give more frames".into(),
             })
         }
         _ => Ok(()),
     }
 }
 
-/// Asks step after step; writes and prints what was asked for.
+/// Runs step after step; writes and prints each answer.
 ///
 /// # Errors
 /// Those of the device, and of output.
@@ -123,7 +124,7 @@ impl Steps<'_> {
         device: Device,
         (scene, query): (Scene, Query),
     ) -> Result<Steps<'a>, Error> {
-        let faces = args.file_faces.then(|| FileFaces::of(scene.bodies(), &all.polygons));
+        let faces = args.out.file_faces.then(|| FileFaces::of(scene.bodies(), &all.polygons));
         let detector = during("building", || OneQuery::new(device, scene, query))?;
         Ok(Steps { args, all, query, detector, faces })
     }
@@ -139,11 +140,12 @@ impl Steps<'_> {
             let geometry = geometry(self.args, &mut self.detector, &found)?;
             self.put(&mut out, &found, &report, geometry.as_deref()).map_err(Stop::File)?;
             total.add(step, &found);
-            if self.args.json {
+            if self.args.out.json {
                 told.push(report);
             } else {
-                let head = if step == 0 { self.head(&report) } else { String::new() };
-                print(&(head + &line(&report, at_rest)))?;
+                let verbose = self.args.out.verbose;
+                let head = if step == 0 && verbose { self.head(&report) } else { String::new() };
+                print(&(head + &line(&report, at_rest, verbose)))?;
             }
         }
         match &mut out {
@@ -153,7 +155,7 @@ impl Steps<'_> {
             Out::Vtp(vtp, out) => vtp.write(*out).map_err(|e| e.to_string()),
         }
         .map_err(Stop::File)?;
-        if self.args.json {
+        if self.args.out.json {
             #[derive(Serialize)]
             struct All {
                 steps: Vec<Report>,
@@ -169,7 +171,8 @@ impl Steps<'_> {
 
     /// A detector begins where the first step does.
     fn ask(&mut self, step: usize, at_rest: bool) -> Result<Contacts, Error> {
-        let anew = self.args.rebuild_every.is_some_and(|every| (step as u64).is_multiple_of(every.into()));
+        let anew =
+            self.args.research.rebuild_every.is_some_and(|every| (step as u64).is_multiple_of(every.into()));
         let inputs = self.all.inputs(self.detector.scene(), step, at_rest);
         match step {
             0 => self.detector.detect(),
@@ -182,7 +185,7 @@ impl Steps<'_> {
         }
     }
 
-    /// The summary. Of a mesh one word about its seams is enough.
+    /// The summary. Seams of a mesh are noted once.
     fn report(&mut self, step: usize, found: &Contacts) -> Report {
         let mut summary = self.detector.summary(found);
         summary.frames = if self.query.kind().is_at_rest() { 1 } else { 2 };
@@ -235,11 +238,11 @@ impl Steps<'_> {
         }
     }
 
-    /// What all steps have in common.
+    /// The scene and the query, for all steps.
     fn head(&self, report: &Report) -> String {
         let summary = &report.summary;
         format!(
-            "{}, {}, {}, {}; {:?} by {:?} on {}\n",
+            "{}, {}, {}, {}; {} query by {} on {}\n",
             counted(self.detector.scene().ids().count() as u64, "body", "bodies"),
             counted(summary.triangles as u64, "triangle", "triangles"),
             counted(summary.vertices as u64, "vertex", "vertices"),
@@ -251,40 +254,25 @@ impl Steps<'_> {
     }
 }
 
-/// A step on a line, and what a user should know of it below.
-fn line(report: &Report, at_rest: bool) -> String {
-    let summary = &report.summary;
-    let mut text = format!(
-        "{} {}: {}{}; ms {:.3}, waited for {:.3}; hash {}\n",
-        if at_rest { "frame" } else { "step" },
-        report.step.unwrap_or(0),
-        found(summary),
-        summary.earliest_toi.map_or(String::new(), |toi| format!(", the first at t = {toi}")),
-        summary.ms.total,
-        summary.ms.wall,
-        summary.hash
-    );
-    // Writing to a String cannot fail.
-    summary.notes.iter().for_each(|note| _ = writeln!(text, "  {note}"));
-    summary.caveats.iter().for_each(|reason| _ = writeln!(text, "  caveats: {reason}"));
-    text
-}
-
-/// What a step found.
-fn found(summary: &Summary) -> String {
-    match (&summary.nearest, summary.query) {
-        (Some(nearest), _) => format!("distance {}", nearest.distance),
-        (None, QueryKind::Distance) => "no distance".into(),
-        _ => counted(summary.contacts as u64, "contact", "contacts"),
+/// A step on a line, with its notes and caveats below.
+fn line(report: &Report, at_rest: bool, verbose: bool) -> String {
+    let (summary, name) = (&report.summary, if at_rest { "frame" } else { "step" });
+    let found = text::found(summary);
+    let mut text = format!("{name} {}: {found}; {} ms", report.step.unwrap_or(0), digits(summary.ms.wall));
+    if verbose {
+        text += &format!(", frame {:.3} ms, wall {:.3} ms", summary.ms.total, summary.ms.wall);
+        text += &format!("; hash {}", summary.hash);
     }
+    text + "\n" + &text::remarks(summary)
 }
 
-/// Of all steps.
+/// The sum of all steps.
 #[derive(Default)]
 struct Total {
     steps: u64,
     contacts: u64,
-    ms: [f64; 2],
+    /// Wall time, milliseconds.
+    ms: f64,
     first: Option<(usize, f64)>,
     /// The least distance, and its frame.
     nearest: Option<(f64, usize)>,
@@ -294,8 +282,7 @@ impl Total {
     fn add(&mut self, step: usize, found: &Contacts) {
         self.steps += 1;
         self.contacts += found.len() as u64;
-        self.ms[0] += found.stats.stages.total;
-        self.ms[1] += found.stats.stages.wall;
+        self.ms += found.stats.stages.wall;
         self.first = self.first.or(found.earliest_toi().map(|toi| (step, toi)));
         let nearer = |least: f64| self.nearest.is_none_or(|(other, _)| least < other);
         if let Some(least) = found.distance().filter(|&least| nearer(least)) {
@@ -305,10 +292,10 @@ impl Total {
 
     fn text(&self, at_rest: bool) -> String {
         let [name, names] = if at_rest { ["frame", "frames"] } else { ["step", "steps"] };
-        let first = |(step, toi)| format!(", the first in step {step} at t = {toi}");
+        let first = |(step, toi)| format!(", first in step {step} at t = {}", text::below(toi));
         let found = match self.nearest {
             Some((least, step)) => {
-                format!("{least} apart where they are nearest, in {name} {step} of {}", self.steps)
+                format!("least distance {least}, in {name} {step} of {}", self.steps)
             }
             None => format!(
                 "{} in {}{}",
@@ -317,6 +304,6 @@ impl Total {
                 self.first.map_or(String::new(), first)
             ),
         };
-        format!("{found}; ms {:.3}, waited for {:.3}\n", self.ms[0], self.ms[1])
+        format!("{found}; {} ms\n", digits(self.ms))
     }
 }

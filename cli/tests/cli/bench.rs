@@ -33,7 +33,7 @@ struct Tiny {
 impl Tiny {
     fn new(name: &str) -> Tiny {
         let folder = Folder::new(name);
-        ok(&["scene", "soup-moving", "--triangles", "60", "--out", folder.name()]);
+        ok(&["lab", "scene", "soup-moving", "--triangles", "60", "--out", folder.name()]);
         let mesh = ["t0", "t1"].map(|at| folder.path(&format!("soup-moving_{at}.ply")));
         let tiny = Tiny { first: folder.path("first/bench.csv"), folder, mesh };
         ok(&tiny.args(&["--out", &tiny.folder.path("first")]));
@@ -43,7 +43,7 @@ impl Tiny {
     /// The arguments that ask it, and more.
     fn args<'a>(&'a self, more: &[&'a str]) -> Vec<&'a str> {
         let [t0, t1] = &self.mesh;
-        let own = ["bench", "--case", "soup-moving_t0", "--mesh", t0, t1, "--backend", "cpu"];
+        let own = ["lab", "bench", "--case", "soup-moving_t0", "--mesh", t0, t1, "--backend", "cpu"];
         [&own[..], &["--threads", "1", "--repeat", "3"], more].concat()
     }
 
@@ -133,7 +133,7 @@ fn the_same_again_has_ratios_and_no_fault() {
         assert_eq!(against[empty], serde_json::json!([]), "{empty}");
     }
     let text = ok(&args);
-    assert!(text.contains("  now/earlier ") && text.contains("every answer that is in both"), "{text}");
+    assert!(text.contains("  now/earlier ") && text.contains("all answers in both"), "{text}");
 }
 
 #[test]
@@ -188,11 +188,11 @@ fn what_only_one_has_is_told() {
     assert!(!text.contains("only in ") && !text.contains("not in "), "{text}");
     // A file that has nothing of what is asked would pass whatever it says.
     let near = [&against[..], &["--question", "near"]].concat();
-    assert!(refused(2, &near).contains("--against would do nothing"));
+    assert!(refused(2, &near).contains("--against has no effect"));
     tiny.planted(&[("question", "near")], &[("case", "gone")]);
     assert!(!ok(&against).contains("gone"));
     tiny.planted(&[], &[("case", "gone")]);
-    assert!(refused(2, &against).contains("--against would do nothing"));
+    assert!(refused(2, &against).contains("--against has no effect"));
 }
 
 #[test]
@@ -203,7 +203,10 @@ fn another_machine_is_said_and_has_no_limit() {
         let text = ok(&tiny.args(&["--against", &planted]));
         assert!(text.contains("another machine") && text.contains("now/earlier"), "{text}");
         let said = refused(2, &tiny.args(&["--against", &planted, "--limit", "2"]));
-        assert!(said.contains("--limit with ") && said.contains("; leave it out, or give"), "{said}");
+        assert!(
+            said.contains("--limit needs a file of this machine") && said.contains("; remove it, or give"),
+            "{said}"
+        );
         assert!(said.contains(if cells.1.is_empty() { "planted.csv" } else { cells.1 }), "{said}");
     }
 }
@@ -216,7 +219,7 @@ fn a_file_that_is_not_one_is_named_with_its_line() {
         let planted = tiny.planted(first, cells);
         let said = refused(3, &tiny.args(&["--against", &planted]));
         assert!(said.contains("planted.csv: line 3: ") && said.contains(part), "{cells:?}: {said}");
-        assert!(said.contains("; mend it, or measure anew"), "{said}");
+        assert!(said.contains("; fix it, or measure again"), "{said}");
     };
     malformed(&[("median_ms", "fast")], "median_ms is \"fast\", and must be a number from 0");
     malformed(&[("triangles", "-1")], "triangles is \"-1\"");
@@ -263,43 +266,44 @@ fn a_file_that_is_not_one_is_named_with_its_line() {
 fn arguments_that_ask_nothing_are_refused() {
     let tiny = Tiny::new("bench-arguments");
     let [t0, t1] = &tiny.mesh;
-    let unknown = refused(2, &["bench", "--case", "lace", "--mesh", t0]);
-    assert!(unknown.contains("no case is named lace; choose among: draped, cloth-ball, "), "{unknown}");
+    let unknown = refused(2, &["lab", "bench", "--case", "lace", "--mesh", t0]);
+    assert!(unknown.contains("--case is unknown, got lace; use one of: draped, cloth-ball, "), "{unknown}");
     assert!(unknown.contains("apart, soup-moving_t0"), "{unknown}");
     assert!(
-        refused(2, &["bench", "--mesh", t0, "--mesh", t0]).contains("two cases are named soup-moving_t0")
+        refused(2, &["lab", "bench", "--mesh", t0, "--mesh", t0])
+            .contains("--mesh names a case twice, got soup-moving_t0")
     );
-    assert!(refused(2, &["bench", "--mesh", t0, t1, t1]).contains("error: "));
-    assert!(refused(2, &["bench", "--question", "why"]).contains("separation"));
-    assert!(refused(2, &tiny.args(&["--question", "distance"])).contains("no case can be asked that"));
-    assert!(refused(2, &["bench", "--limit", "2"]).contains("--against"));
+    assert!(refused(2, &["lab", "bench", "--mesh", t0, t1, t1]).contains("error: "));
+    assert!(refused(2, &["lab", "bench", "--question", "why"]).contains("separation"));
+    assert!(
+        refused(2, &tiny.args(&["--question", "distance"])).contains("--question fits none of the cases")
+    );
+    assert!(refused(2, &["lab", "bench", "--limit", "2"]).contains("--against"));
     for limit in ["0", "-1", "NaN", "inf", "twice"] {
         let said = refused(2, &tiny.args(&["--against", &tiny.first, "--limit", limit]));
         assert!(said.contains("give a number above 0"), "{limit}: {said}");
     }
-    let cuda = ["bench", "--threads", "1", "--backend", "cuda"];
-    assert!(refused(2, &cuda).contains("a GPU takes no CPU threads"));
-    assert!(refused(2, &["bench", "--list", "--json"]).contains("--list"));
+    let cuda = ["lab", "bench", "--threads", "1", "--backend", "cuda"];
+    assert!(refused(2, &cuda).contains("a GPU has no CPU threads"));
+    assert!(refused(2, &["lab", "bench", "--list", "--json"]).contains("--list"));
     // The earlier file stays.
     let before = tiny.folder.read("first/bench.csv");
     let args = tiny.args(&["--against", &tiny.first, "--out"]);
     let said = refused(2, &[&args[..], &[&tiny.folder.path("first")]].concat());
-    assert!(said.contains("--out would write over ") && said.contains("first/bench.csv"), "{said}");
+    assert!(said.contains("--out would overwrite ") && said.contains("first/bench.csv"), "{said}");
     assert_eq!(tiny.folder.read("first/bench.csv"), before);
-    assert!(refused(3, &["bench", "--case", "no", "--mesh", "no.ply"]).contains("no.ply"));
+    assert!(refused(3, &["lab", "bench", "--case", "no", "--mesh", "no.ply"]).contains("no.ply"));
     assert!(refused(4, &tiny.args(&["--out", &tiny.first])).contains("cannot be written"));
 }
 
 #[test]
 fn the_list_is_told_and_made() {
-    let list = ok(&["bench", "--list"]);
+    let list = ok(&["lab", "bench", "--list"]);
     let names: Vec<&str> = list.lines().filter_map(|line| line.split(' ').next()).collect();
     assert_eq!(names, ["draped", "cloth-ball", "soup", "balls", "pile", "worlds", "apart"]);
-    let help = ok(&["bench", "--help"]);
-    assert!(help.contains(&names.join(", ")), "{help}");
     let folder = Folder::new("bench-list");
     let mesh = folder.write("still.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    let asked = ["bench", "--mesh", &mesh, "--repeat", "1", "--json", "--question"];
+    let asked = ["lab", "bench", "--mesh", &mesh, "--repeat", "1", "--json", "--question"];
     let asked = [&asked[..], &["discrete", "earliest", "distance"]].concat();
     let all: Value = serde_json::from_str(&ok(&asked)).expect("JSON");
     let found = |case: &str, question: &str| {

@@ -1,7 +1,7 @@
 //! Every option of every command either changes what happens or is refused: none is accepted in
 //! silence.
 
-use super::{Folder, err, ok, out, run};
+use super::{Folder, err, ok, out, path, run};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
@@ -11,10 +11,14 @@ const COMMANDS: [&str; 8] = ["detect", "plan", "picture", "explain", "scene", "b
 /// Options of commands that take long: the test that sees what each changes.
 const ELSEWHERE: [(&str, &[&str], &str); 4] = [
     ("bench", &["question", "repeat", "against", "limit", "out", "json", "list"], "tests/cli/bench.rs"),
-    ("tables", &["frames", "table", "bv", "out", "json", "mesh", "profile", "scene"], "tests/cli/tables.rs"),
+    (
+        "tables",
+        &["frames", "table", "bounding-volume", "out", "json", "mesh", "profile", "scene"],
+        "tests/cli/tables.rs",
+    ),
     ("trade", &["queries", "mesh", "truth", "out", "json"], "tests/cli/trade.rs"),
     // How much is measured, and how often: no test has the minutes to hours that these take.
-    ("trade", &["full", "repeat"], "src/trade.rs"),
+    ("trade", &["full", "repeat"], "src/lab/trade.rs"),
 ];
 
 /// A command with some arguments, then with others instead.
@@ -54,7 +58,7 @@ fn outcome(args: &[&str], folder: &Folder) -> Outcome {
 fn scrub(json: &mut Value) {
     match json {
         Value::Object(all) => {
-            all.retain(|key, _| !matches!(key.as_str(), "ms" | "times" | "model" | "machine" | "threads"));
+            all.retain(|key, _| !matches!(key.as_str(), "ms" | "machine" | "threads"));
             all.values_mut().for_each(scrub);
         }
         Value::Array(all) => all.iter_mut().for_each(scrub),
@@ -65,13 +69,13 @@ fn scrub(json: &mut Value) {
 /// The pair, if both do the same.
 fn is_silent((command, base, one, two): &Pair, folder: &Folder) -> Option<String> {
     let [first, second] =
-        [one, two].map(|more| outcome(&[&[*command], &base[..], &more[..]].concat(), folder));
+        [one, two].map(|more| outcome(&[&path(command)[..], &base[..], &more[..]].concat(), folder));
     (first == second).then(|| format!("{command} {}: {one:?} and {two:?} do the same", base.join(" ")))
 }
 
 /// The options that a command's help lists.
 fn options(command: &str) -> BTreeSet<String> {
-    let help = ok(&[command, "--help"]);
+    let help = ok(&[path(command), vec!["--help"]].concat());
     let lines =
         help.lines().filter(|line| line.trim_start().starts_with('-') && !line.starts_with("         "));
     let names = lines.filter_map(|line| line.split_whitespace().find_map(|word| word.strip_prefix("--")));
@@ -82,8 +86,8 @@ fn options(command: &str) -> BTreeSet<String> {
 #[test]
 fn every_option_changes_something_or_is_refused() {
     let folder = Folder::new("effects");
-    ok(&["scene", "soup-moving", "--triangles", "60", "--out", folder.name()]);
-    ok(&["scene", "soup", "--triangles", "60", "--seed", "5", "--out", folder.name()]);
+    ok(&["lab", "scene", "soup-moving", "--triangles", "60", "--out", folder.name()]);
+    ok(&["lab", "scene", "soup", "--triangles", "60", "--seed", "5", "--out", folder.name()]);
     let [t0, t1] = ["soup-moving_t0.ply", "soup-moving_t1.ply"].map(|name| folder.path(name));
     let other = folder.path("soup_t0.ply");
     let quads = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .2 .2 -1\nv .3 .2 1\nv .2 .3 1\nf 1 2 3 4\nf 5 6 7\n";
@@ -115,14 +119,13 @@ fn every_option_changes_something_or_is_refused() {
         ("detect", scene.clone(), no.clone(), vec!["--earliest"]),
         ("detect", scene.clone(), no.clone(), vec!["--near", "0.01"]),
         ("detect", vec![&t0, "--with", &other, "--json"], no.clone(), vec!["--distance"]),
-        ("detect", scene.clone(), vec!["--broad", "tiles"], vec!["--broad", "tree"]),
-        ("detect", vec![&t0, "--with", &other, "--distance"], no.clone(), vec!["--order", "runs"]),
-        ("detect", scene.clone(), vec!["--bv", "aabb"], vec!["--bv", "obb"]),
+        ("detect", scene.clone(), vec!["--broad-phase", "tiles"], vec!["--broad-phase", "tree"]),
+        ("detect", scene.clone(), vec!["--bounding-volume", "aabb"], vec!["--bounding-volume", "obb"]),
         (
             "detect",
             scene.clone(),
-            vec!["--broad", "tree", "--refit", "levels"],
-            vec!["--broad", "tree", "--refit", "bottom-up"],
+            vec!["--broad-phase", "tree", "--refit", "levels"],
+            vec!["--broad-phase", "tree", "--refit", "treelets"],
         ),
         ("detect", scene.clone(), vec!["--traversal", "per-leaf"], vec!["--traversal", "steal"]),
         (
@@ -149,9 +152,9 @@ fn every_option_changes_something_or_is_refused() {
             "detect",
             scene.clone(),
             vec!["--solver", "certified-f32"],
-            vec!["--solver", "certified-f32", "--boxes", "1"],
+            vec!["--solver", "certified-f32", "--max-iterations", "1"],
         ),
-        ("detect", scene.clone(), no.clone(), vec!["--separation", "0.1"]),
+        ("detect", scene.clone(), no.clone(), vec!["--min-separation", "0.1"]),
         ("detect", scene.clone(), no.clone(), vec!["--assume-free"]),
         ("detect", scene.clone(), no.clone(), vec!["--backend", "auto"]),
         ("detect", scene.clone(), vec!["--threads", "1"], vec!["--threads", "2"]),
@@ -164,8 +167,9 @@ fn every_option_changes_something_or_is_refused() {
         ("detect", vec![&t0, &t1, "--out", &csv], no.clone(), vec!["--geometry"]),
         ("detect", vec![&t0, "--json"], no.clone(), vec!["--out-mesh", &ply]),
         ("detect", vec![&t0], no.clone(), vec!["--json"]),
+        ("detect", vec![&t0], no.clone(), vec!["--verbose"]),
         ("detect", vec![&t0, &t1, &t0, "--json"], no.clone(), vec!["--repeat", "3"]),
-        ("detect", files.clone(), no.clone(), vec!["--rebuild", "never"]),
+        ("detect", files.clone(), no.clone(), vec!["--rebuild", "auto"]),
         ("detect", files.clone(), no.clone(), vec!["--rebuild-every", "2"]),
         ("detect", files.clone(), vec!["--repeat", "2", "--only", "narrow"], vec!["--repeat", "2"]),
         // Options that others leave nothing to do.
@@ -195,13 +199,12 @@ fn every_option_changes_something_or_is_refused() {
         ("picture", vec![&t0, "--size", "64x64"], no.clone(), vec!["--out", &png]),
         // One pair.
         ("explain", vec![&t0, &t1], vec!["--vf", "0", "3"], vec!["--vf", "0", "4"]),
-        ("explain", vec![&t0, "--with", &other], vec!["--fv", "0", "3"], vec!["--fv", "0", "4"]),
         ("explain", vec![&t0, "--vf", "0", "3"], no.clone(), vec!["--with", &other]),
         ("explain", vec![&t0, &t1], vec!["--ee", "0", "3"], vec!["--ee", "0", "4"]),
         ("explain", vec![&t0], vec!["--tt", "0", "3"], vec!["--tt", "0", "4"]),
         ("explain", vec![&t0, &t1, "--vf", "0", "3"], no.clone(), vec!["--tolerance", "0.5"]),
         ("explain", vec![&t0, &t1, "--vf", "0", "3"], no.clone(), vec!["--json"]),
-        ("explain", vec![&t0, "--tt", "0", "3"], no.clone(), vec!["--boxes", "2"]),
+        ("explain", vec![&t0, "--tt", "0", "3"], no.clone(), vec!["--max-iterations", "2"]),
         // Scenes that are written.
         ("scene", vec!["soup", "--out", &dir], vec!["--triangles", "30"], vec!["--triangles", "40"]),
         ("scene", vec!["soup-moving", "--triangles", "30", "--out", &dir], no.clone(), vec!["--frames", "1"]),
@@ -231,7 +234,7 @@ fn every_option_changes_something_or_is_refused() {
         ("trade", vec!["--mesh", &t0, "--backend", "cuda"], no.clone(), vec!["--cases", "3"]),
         ("trade", vec!["--mesh", &t0, "--backend", "cuda"], no.clone(), vec!["--seed", "3"]),
     ];
-    // A plan and a picture have the options of detect, by the same code; a plan measures the machine each time, which takes long.
+    // A plan and a picture have the options of detect, by the same code.
     pairs.push(("plan", scene, no.clone(), vec!["--no-run"]));
     let silent: Vec<String> = pairs.iter().filter_map(|pair| is_silent(pair, &folder)).collect();
     assert!(silent.is_empty(), "{}", silent.join("\n"));

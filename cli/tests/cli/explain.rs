@@ -71,14 +71,10 @@ fn edges_two_bodies_and_triangles() {
     assert!(own["notes"].to_string().contains("share a vertex") && own["exact"]["fraction"] == "0");
     let a = folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     let b = folder.write("b.obj", "v 0.25 0.25 -1\nv 0.25 0.25 1\nv 5 5 1\nf 1 2 3\n");
-    for (kind, i, j) in [("--vf", "0", "0"), ("--fv", "0", "1"), ("--ee", "2", "0"), ("--tt", "0", "0")] {
+    for (kind, i, j) in [("--vf", "0", "0"), ("--ee", "2", "0"), ("--tt", "0", "0")] {
         let report = summary(&["explain", &a, "--with", &b, kind, i, j, "--json"]);
         assert_eq!(report["exact"]["meets"].as_bool(), Some(kind == "--tt"), "{kind}");
-        assert!(report["of"][0].as_str().is_some_and(|of| of.ends_with(if kind == "--fv" {
-            "b.obj"
-        } else {
-            "a.obj"
-        })));
+        assert!(report["of"][0].as_str().is_some_and(|of| of.ends_with("a.obj")));
     }
     let text = ok(&["explain", &a, "--with", &b, "--tt", "0", "0"]);
     assert!(text.contains("they meet") && text.contains("exact") && text.contains("moller"), "{text}");
@@ -115,7 +111,7 @@ fn numbers_and_files_of_queries() {
     gz.write_all(text.as_bytes()).expect("packed");
     std::fs::write(&packed, gz.finish().expect("packed")).expect("written");
     for args in [&[&*plain, "--between", "ee"][..], &[&packed]] {
-        for (row, says) in [("0", "do not meet"), ("1", "that they meet")] {
+        for (row, says) in [("0", "by the file they do not meet"), ("1", "by the file they meet")] {
             let report = summary(&[&["explain", "--json", "--row", row, "--queries"], args].concat());
             assert_eq!((&report["exact"], &report["solvers"]), (&given["exact"], &given["solvers"]));
             assert!(report["notes"][0].as_str().is_some_and(|note| note.contains(says)), "{report}");
@@ -159,24 +155,28 @@ fn what_there_is_not_is_named() {
     let loose = folder.write("loose.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 nan 0\nf 1 2 3\n");
     let message = refused(3, &["explain", &loose, "--vf", "3", "0"]);
     assert!(message.contains("loose.obj") && message.contains("vertex 3 has y = NaN"), "{message}");
-    let bad: [&[&str]; 8] = [
+    let bad: [&[&str]; 7] = [
         &["explain"],
         &["explain", &mesh],
         &["explain", "--vf", "0", "0"],
         &["explain", &mesh, "--vf", "0"],
         &["explain", &mesh, "--vf", "0", "0", "--ee", "0", "1"],
-        &["explain", &mesh, "--fv", "0", "0"],
         &["explain", "--queries", "a.csv"],
         &["explain", "--between", "vf", "--points", "1", "2"],
     ];
     for args in bad {
         assert_eq!(run(args).status.code(), Some(2), "{args:?}");
     }
+    let few = refused(2, &["explain", "--between", "vf", "--points", "1", "-2"]);
+    assert!(few.contains("--points takes 24 numbers, got 2"), "{few}");
     let points = vec!["inf"; 24];
     let message = refused(3, &[&["explain", "--between", "vf", "--points"][..], &points].concat());
     assert!(message.contains("--points: vertex 0 has x = inf"), "{message}");
     let other = folder.write("other.obj", T0);
-    let message = refused(3, &["explain", &mesh, "--with", &other, "--fv", "0", "6"]);
-    assert!(message.contains("other.obj: has no vertex 6: it has 6 of them"), "{message}");
-    assert!(refused(2, &["explain", &mesh, "--vf", "0", "1", "--tolerance", "nan"]).contains("from 0"));
+    let message = refused(3, &["explain", &mesh, "--with", &other, "--vf", "0", "2"]);
+    assert!(message.contains("other.obj: has no face 2: it has 2 of them"), "{message}");
+    assert!(
+        refused(2, &["explain", &mesh, "--vf", "0", "1", "--tolerance", "nan"])
+            .contains("at least 0, got NaN")
+    );
 }

@@ -44,11 +44,11 @@ fn every_command_ends_by_a_signal() {
         &["detect", "--scene", "identical", "--triangles", "20000", "--out", &csv],
         &["detect", "--scene", "cloth-ball", "--triangles", "92230", "--repeat", "1000", "--out", &csv],
         &["detect", &obj, "--out", &csv],
-        &["trade", "--full", "--out", &out],
-        &["tables", "--out", &out],
-        &["bench", "--out", &out],
+        &["lab", "trade", "--full", "--out", &out],
+        &["lab", "tables", "--out", &out],
+        &["lab", "bench", "--out", &out],
         &["selftest"],
-        &["plan", "--scene", "identical", "--triangles", "20000"],
+        &["lab", "plan", "--scene", "identical", "--triangles", "20000"],
     ];
     for (at, command) in commands.into_iter().enumerate() {
         let (signal, status) = if at % 2 == 0 { ("-INT", 130) } else { ("-TERM", 143) };

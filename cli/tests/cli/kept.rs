@@ -179,7 +179,7 @@ fn what_is_read_is_not_written_over() {
     ];
     for args in all {
         let said = refused(2, args);
-        assert!(said.contains("would write over ") && said.contains("which is read"), "{args:?}: {said}");
+        assert!(said.contains("would overwrite ") && said.contains("which is read"), "{args:?}: {said}");
         assert!(fs::read(&mesh).expect("a mesh") == before, "{args:?}");
     }
     // Of another mesh it may be replaced.
@@ -191,9 +191,12 @@ fn what_is_read_is_not_written_over() {
 fn whatever_writes_a_folder_keeps_what_is_there() {
     let folder = Folder::new("folders");
     let dir = folder.path("out");
-    let tables = ["tables", "--scene", "n-body", "--triangles", "300", "--frames", "2", "--table", "6.12"];
-    let all: [(&str, &[&str]); 2] =
-        [("out/grid_t0.ply", &["scene", "grid", "--triangles", "400"]), ("out/figure-6.12.svg", &tables)];
+    let tables =
+        ["lab", "tables", "--scene", "n-body", "--triangles", "300", "--frames", "2", "--table", "6.12"];
+    let all: [(&str, &[&str]); 2] = [
+        ("out/grid_t0.ply", &["lab", "scene", "grid", "--triangles", "400"]),
+        ("out/figure-6.12.svg", &tables),
+    ];
     for (name, args) in all {
         folder.write(name, "good\n");
         let args = [args, &["--out", &dir]].concat();

@@ -21,11 +21,11 @@ fn what_is_too_large_is_refused_before_it_is_made() {
         &["detect", "--scene", "soup", "--triangles", huge],
         &["detect", "--scene", "balls", "--triangles", huge],
         &["detect", "--scene", "n-body", "--triangles", huge],
-        &["plan", "--scene", "cloth-ball", "--triangles", huge],
-        &["scene", "draped", "--triangles", huge, "--out", &dir],
-        &["tables", "--scene", "n-body", "--triangles", huge],
-        &["tables", "--scene", "n-body", "--triangles", "20000", "--frames", "10000"],
-        &["trade", "--cases", "1000000"],
+        &["lab", "plan", "--scene", "cloth-ball", "--triangles", huge],
+        &["lab", "scene", "draped", "--triangles", huge, "--out", &dir],
+        &["lab", "tables", "--scene", "n-body", "--triangles", huge],
+        &["lab", "tables", "--scene", "n-body", "--triangles", "20000", "--frames", "10000"],
+        &["lab", "trade", "--cases", "1000000"],
         &["selftest", "--triangles", huge],
     ];
     for args in all {

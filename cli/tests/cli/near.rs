@@ -10,13 +10,13 @@ fn near_features_are_told() {
     let folder = Folder::new("near");
     let mesh = folder.write("mesh.obj", MESH);
     let asked = ["detect", &mesh, "--backend", "cpu", "--near", "1"];
-    let text = ok(&asked);
+    let text = ok(&[&asked[..], &["-v"]].concat());
     assert!(
-        text.contains("Near by Bounded") && text.contains("2 contacts") && text.contains("within 1e0"),
+        text.contains("near by bounded") && text.starts_with("2 pairs within 1, 2 undecided; "),
         "{text}"
     );
     // At the distance itself, to the bit: rounding could not tell them from such that are farther.
-    assert!(text.contains("caveats: 2 pairs listed, within the distance or by a rounding"), "{text}");
+    assert!(text.contains("caveat: 2 pairs listed, within the distance or by a rounding"), "{text}");
     let all = summary(&[&asked[..], &["--json"]].concat());
     assert_eq!(
         (&all["query"], &all["distance"], &all["undecided"]),
@@ -28,8 +28,8 @@ fn near_features_are_told() {
     assert_eq!((&more["contacts"], &more["caveats"]), (&2.into(), &serde_json::json!([])), "{more}");
     assert_eq!(summary(&["detect", &mesh, "--near", "0.99", "--json"])["contacts"], 0);
 
-    let rows = "kind,a,b,squared_distance,w0,w1,w2,closest\n\
-                vf,3,0,1,0.5,0.25,0.25,vertex-face\nvf,4,0,1,0.25,0.5,0.25,vertex-face\n";
+    let rows = "kind,feature_a,feature_b,squared_distance,weight_0,weight_1,weight_2,weight_3,closest\n\
+                vf,3,0,1,1,0.5,0.25,0.25,vertex-face\nvf,4,0,1,1,0.25,0.5,0.25,vertex-face\n";
     let csv = folder.path("near.csv");
     ok(&[&asked[..], &["--out", &csv]].concat());
     assert_eq!(std::fs::read_to_string(&csv).expect("written"), rows);
@@ -41,7 +41,7 @@ fn near_features_are_told() {
     assert_eq!((&first["kind"], &first["closest"]), (&"vf".into(), &"vertex-face".into()), "{told}");
     assert_eq!(
         (&first["weights"], &first["squared_distance"]),
-        (&serde_json::json!([0.5, 0.25, 0.25]), &1.0.into())
+        (&serde_json::json!([1.0, 0.5, 0.25, 0.25]), &1.0.into())
     );
     // Faces of the file would not have the weights' corners.
     assert_eq!(run(&[&asked[..], &["--out", &csv, "--file-faces"]].concat()).status.code(), Some(2));
@@ -49,6 +49,10 @@ fn near_features_are_told() {
 
 #[test]
 fn a_plan_names_the_distance() {
-    let text = ok(&["plan", "--scene", "soup", "--triangles", "20", "--backend", "cpu", "--near", "0.5"]);
-    assert!(text.contains("distance   5e-1, as asked") && text.contains("solver     bounded: "), "{text}");
+    let text =
+        ok(&["lab", "plan", "--scene", "soup", "--triangles", "20", "--backend", "cpu", "--near", "0.5"]);
+    assert!(
+        text.contains("distance        5e-1, as given") && text.contains("solver          bounded: "),
+        "{text}"
+    );
 }

@@ -62,7 +62,7 @@ fn notes_are_told_and_strict_refuses_them() {
             assert!(found["notes"][0].as_str().is_some_and(|text| text.contains(&said)), "{found}");
             assert!(ok(&["detect", file]).contains(&said));
             for command in ["detect", "plan"] {
-                let refused = refused(3, &[command, file, "--strict"]);
+                let refused = refused(3, &[super::path(command), vec![file.as_str(), "--strict"]].concat());
                 let reason = said.split("first: ").last().unwrap_or_default();
                 assert!(refused.contains(&format!("mesh.obj: {reason}")), "{refused}");
             }

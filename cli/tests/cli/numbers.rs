@@ -7,7 +7,7 @@ fn numbers_below_zero_reach_the_checks() {
     let scene = ["detect", "--scene", "soup-moving", "--triangles", "20"];
     for (option, said) in [
         ("--tolerance", "a tolerance that is no length"),
-        ("--separation", "a separation that is no length"),
+        ("--min-separation", "a separation that is no length"),
         ("--near", "a distance of -"),
     ] {
         for number in ["-3e-5", "-1", "-0.5", "-1e300", "-inf", "-.5"] {
@@ -19,26 +19,26 @@ fn numbers_below_zero_reach_the_checks() {
         }
     }
     let text = refused(2, &["explain", "a.ply", "--vf", "0", "0", "--tolerance", "-3e-5"]);
-    assert!(text.contains("a tolerance that is no length"), "{text}");
+    assert!(text.contains("--tolerance must be finite and at least 0, got -0.00003"), "{text}");
     // Before anything is read.
     let text = refused(2, &["detect", "no.ply", "no.ply", "--tolerance", "-3e-5"]);
     assert!(text.contains("a tolerance that is no length"), "{text}");
     for args in [
         &["detect", "a.ply", "--threads"][..],
         &["detect", "a.ply", "--repeat"],
-        &["detect", "a.ply", "--boxes"],
+        &["detect", "a.ply", "--max-iterations"],
         &["detect", "a.ply", "--budget"],
         &["detect", "a.ply", "--cores"],
         &["detect", "a.ply", "--queue"],
         &["detect", "--scene", "soup", "--triangles"],
         &["detect", "--scene", "soup", "--seed"],
-        &["scene", "n-body", "--out", "x", "--frames"],
-        &["scene", "n-body", "--out", "x", "--skip"],
-        &["tables", "--frames"],
-        &["tables", "--triangles"],
-        &["tables", "--rebuild-every"],
-        &["trade", "--cases"],
-        &["trade", "--repeat"],
+        &["lab", "scene", "n-body", "--out", "x", "--frames"],
+        &["lab", "scene", "n-body", "--out", "x", "--skip"],
+        &["lab", "tables", "--frames"],
+        &["lab", "tables", "--triangles"],
+        &["lab", "tables", "--rebuild-every"],
+        &["lab", "trade", "--cases"],
+        &["lab", "trade", "--repeat"],
         &["selftest", "--cases"],
         &["selftest", "--triangles"],
         &["explain", "a.ply", "--vf", "0"],
@@ -49,9 +49,11 @@ fn numbers_below_zero_reach_the_checks() {
             assert!(text.contains("give a whole number from "), "{args:?} {number}: {text}");
         }
     }
-    for args in
-        [&["detect", "a.ply", "--threads", "0"][..], &["trade", "--cases", "0"], &["tables", "--frames", "1"]]
-    {
+    for args in [
+        &["detect", "a.ply", "--threads", "0"][..],
+        &["lab", "trade", "--cases", "0"],
+        &["lab", "tables", "--frames", "1"],
+    ] {
         assert!(refused(2, args).contains("give a whole number from "), "{args:?}");
     }
 }
@@ -71,6 +73,7 @@ fn more_threads_than_processors_are_not_taken() {
             "cpu",
             "--threads",
             &threads,
+            "-v",
         ]);
         assert_eq!(output.status.code(), Some(0), "{}", err(&output));
         (super::out(&output), err(&output))
@@ -78,12 +81,8 @@ fn more_threads_than_processors_are_not_taken() {
     let (text, said) = with(all);
     assert!(said.is_empty(), "{said}");
     let (more, said) = with(all + 1);
-    assert!(
-        said.contains(&format!("{} threads were asked for; this machine has {all} processor", all + 1)),
-        "{said}"
-    );
-    let named =
-        |text: &str| text.lines().next().and_then(|line| line.split(" on ").nth(1).map(str::to_owned));
+    assert!(said.contains(&format!("--threads {} exceeds the {all} processor", all + 1)), "{said}");
+    let named = |text: &str| text.lines().find_map(|line| line.split(" on ").nth(1).map(str::to_owned));
     assert_eq!(named(&more), named(&text));
     assert_eq!(
         summary(&[

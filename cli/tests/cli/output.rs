@@ -20,7 +20,8 @@ fn what_cannot_be_written_is_named() {
     assert!(refused(4, &[&scene[..], &[&folder.path("folder.json")]].concat()).contains("cannot be written"));
     let file = folder.write("file", "");
     assert!(
-        refused(4, &["scene", "grid", "--triangles", "16", "--out", &file]).contains("cannot be written")
+        refused(4, &["lab", "scene", "grid", "--triangles", "16", "--out", &file])
+            .contains("cannot be written")
     );
     // The disk is full: every byte is refused.
     if cfg!(target_os = "linux") {
@@ -40,8 +41,8 @@ fn standard_output_that_is_full_or_closed_is_an_error() {
     let all: [&[&str]; 8] = [
         &GRID,
         &["detect", "--scene", "grid", "--triangles", "16", "--json"],
-        &["plan", "--scene", "grid", "--triangles", "16"],
-        &["scene", "grid", "--triangles", "16", "--out", &dir],
+        &["lab", "plan", "--scene", "grid", "--triangles", "16"],
+        &["lab", "scene", "grid", "--triangles", "16", "--out", &dir],
         &[
             "explain",
             "--between",
@@ -72,7 +73,7 @@ fn standard_output_that_is_full_or_closed_is_an_error() {
             "1",
             "0",
         ],
-        &["tables", "--scene", "n-body", "--triangles", "300", "--frames", "2", "--table", "6.12"],
+        &["lab", "tables", "--scene", "n-body", "--triangles", "300", "--frames", "2", "--table", "6.12"],
         &["--help"],
         &["detect", "--help"],
     ];
@@ -108,9 +109,9 @@ fn where_to_write_is_looked_at_before_the_work() {
     let below = format!("{file}/below");
     // The meshes that are missing are never asked for.
     assert!(refused(4, &["detect", &missing, "--out", &nowhere]).contains("a.csv: cannot be written"));
-    let tables = ["tables", "--mesh", &missing, &missing, "--out", &below];
+    let tables = ["lab", "tables", "--mesh", &missing, &missing, "--out", &below];
     assert!(refused(4, &tables).contains("cannot be written"));
-    let trade = ["trade", "--mesh", &missing, "--out", &below];
+    let trade = ["lab", "trade", "--mesh", &missing, "--out", &below];
     assert!(refused(4, &trade).contains("cannot be written"));
     // A format that is not known, before either.
     assert!(refused(2, &["detect", &missing, "--out", "a.txt"]).contains(".csv, .json"));
@@ -152,5 +153,5 @@ fn links_and_pipes_are_written_through() {
     std::os::unix::fs::symlink("/dev/stdout", &stdout).expect("a link");
     let output = run(&[&GRID[..], &["--out", &stdout]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", err(&output));
-    assert!(out(&output).starts_with("tri_a,tri_b\n") && out(&output).contains("16 triangles"));
+    assert!(out(&output).starts_with("tri_a,tri_b\n") && out(&output).contains(" contacts; "));
 }

@@ -1,4 +1,4 @@
-//! `nearmiss scene`.
+//! `nearmiss lab scene`.
 
 use super::{Folder, ok, summary};
 
@@ -10,7 +10,7 @@ fn a_scene_that_is_written_is_the_scene() {
         let uses_chance = ["cloth-ball", "soup-moving"].contains(&name);
         let seed: &[&str] = if uses_chance { &["--seed", "4"] } else { &[] };
         let made = |of: &[&'static str]| [of, &["--triangles", "500"], seed].concat();
-        let written = ok(&[&made(&["scene", name])[..], &["--out", &dir]].concat());
+        let written = ok(&[&made(&["lab", "scene", name])[..], &["--out", &dir]].concat());
         let files: Vec<&str> = written.lines().map(|line| line.split(": ").next().expect("a path")).collect();
         assert_eq!(files.len(), if name == "grid" { 1 } else { 2 }, "{written}");
         let from_files = summary(&[&["detect", "--json"], &files[..]].concat());
@@ -19,7 +19,8 @@ fn a_scene_that_is_written_is_the_scene() {
             assert_eq!(from_files[key], itself[key], "{name}, {key}");
         }
     }
-    let one = ok(&["scene", "balls", "--triangles", "64", "--frames", "1", "--out", &folder.path("one")]);
+    let one =
+        ok(&["lab", "scene", "balls", "--triangles", "64", "--frames", "1", "--out", &folder.path("one")]);
     assert_eq!(one.lines().count(), 1);
 }
 
@@ -28,7 +29,8 @@ fn an_animation_is_written_frame_by_frame() {
     let folder = Folder::new("animation");
     let write = |dir: &str, more: &[&str]| {
         let dir = folder.path(dir);
-        let written = ok(&[&["scene", "flamenco", "--triangles", "300", "--out", &dir][..], more].concat());
+        let written =
+            ok(&[&["lab", "scene", "flamenco", "--triangles", "300", "--out", &dir][..], more].concat());
         written.lines().map(|line| line.split(": ").next().expect("a path").to_owned()).collect::<Vec<_>>()
     };
     let all = write("all", &["--frames", "4", "--skip", "0"]);

@@ -28,7 +28,7 @@ fn a_rigid_body_moves_as_its_vertices_would() {
     let poses = "mesh = \"parts/tip.obj\"\nkind = \"rigid\"\n\
         poses = [{ translation = [0, 0, 1] }, { translation = [0.0, 0.0, -1.0], rotation = [0, 0, 0, 1] }]";
     let vertices = "meshes = [\"parts/tip_up.obj\", \"parts/tip_down.obj\"]";
-    for more in [&[][..], &["--earliest"], &["--separation", "0.125"]] {
+    for more in [&[][..], &["--earliest"], &["--min-separation", "0.125"]] {
         let [a, b] = [ask(poses, more), ask(vertices, more)];
         assert_eq!(a["hash"], b["hash"], "{more:?}");
         assert!(a["earliest_toi"].as_f64().is_some_and(|toi| toi <= 0.5), "{a}");
@@ -71,7 +71,7 @@ fn who_meets_whom_is_told() {
         ("group = 2\nmask = 0xff", 1),
         ("mask = 0", 0),
         ("group = 0", 0),
-        ("kind = \"static\"", 1),
+        ("kind = \"fixed\"", 1),
         ("self_collision = true", 1),
     ] {
         assert_eq!(contacts(text), Some(expected), "{text}");
@@ -90,7 +90,7 @@ fn rows_name_bodies() {
     let folder = Folder::new("scene-rows");
     meshes(&folder);
     let text = format!(
-        "{FLAT}kind = \"static\"\n[[body]]\nname = \"a, \\\"quoted\\\"\"\nmesh = \"parts/tip.obj\"\nkind = \"rigid\"\n\
+        "{FLAT}kind = \"fixed\"\n[[body]]\nname = \"a, \\\"quoted\\\"\"\nmesh = \"parts/tip.obj\"\nkind = \"rigid\"\n\
          poses = [{{ translation = [0, 0, 1] }}, {{ translation = [0, 0, -1] }}, {{ translation = [0, 0, -2] }}]\n\
          [[body]]\nmesh = \"parts/tip_down.obj\"\n"
     );
@@ -126,7 +126,12 @@ fn rows_name_bodies() {
                 for name in ["body_a", "body_b", "kind", "status", "closest"] {
                     assert_eq!(column(name).map(|column| &rows[at][column]), row[name].as_str(), "{row}");
                 }
-                for (name, of) in [("a", &row["a"]), ("b", &row["b"]), ("tri_b", &row["triangles"][1])] {
+                let all = [
+                    ("feature_a", &row["feature_a"]),
+                    ("feature_b", &row["feature_b"]),
+                    ("tri_b", &row["triangles"][1]),
+                ];
+                for (name, of) in all {
                     let cell = column(name).map(|column| rows[at][column].parse().expect("a number"));
                     assert_eq!(cell, of.as_u64(), "{row}");
                 }
@@ -136,7 +141,7 @@ fn rows_name_bodies() {
         assert_eq!(at, rows.len(), "{question:?}");
         assert!(at > 1, "{question:?}");
     }
-    assert!(ok(&["plan", &scene]).contains("Continuous, within and between"));
+    assert!(ok(&["lab", "plan", &scene]).contains("continuous, within and between bodies"));
     // Of one frame there is no column of steps, and a summary as of meshes.
     ok(&["detect", &beside(&folder, "mesh = \"parts/tip_down.obj\""), "--out", &csv, "--repeat", "2"]);
     assert_eq!(folder.read("a.csv"), "body_a,body_b,tri_a,tri_b\nflat,tip,0,0\n");
@@ -157,18 +162,24 @@ fn what_is_wrong_with_a_file_is_named() {
         (format!("{tip}group = -1"), vec![body, "-1", "in `group`"]),
         (format!("{tip}mask = 4294967296"), vec![body, "4294967296", "in `mask`"]),
         (format!("{tip}self_collision = 1"), vec![body, "integer `1`", "boolean", "in `self_collision`"]),
-        (format!("{tip}environment = \"none\""), vec![body, "`environment` is \"none\"", "\"all\""]),
-        (format!("{tip}environment = -3"), vec![body, "`environment` is -3", "0 to 4294967295"]),
-        (format!("{tip}environment = [1]"), vec![body, "`environment` is of type array"]),
-        (format!("{tip}meshes = [\"parts/tip.obj\"]"), vec![body, "both `mesh` and `meshes`"]),
-        ("kind = \"rigid\"".into(), vec![body, "no `mesh`", "name a file"]),
+        (
+            format!("{tip}environment = \"none\""),
+            vec![body, "`environment` must be a number", "got \"none\"", "\"all\""],
+        ),
+        (format!("{tip}environment = -3"), vec![body, "got -3", "0 to 4294967295"]),
+        (format!("{tip}environment = [1]"), vec![body, "`environment` must be", "got of type array"]),
+        (format!("{tip}meshes = [\"parts/tip.obj\"]"), vec![body, "`mesh` and `meshes` exclude each other"]),
+        ("kind = \"rigid\"".into(), vec![body, "`mesh` is missing", "name a file"]),
         ("meshes = []".into(), vec![body, "`meshes` is empty"]),
         ("mesh = 3".into(), vec![body, "integer `3`", "in `mesh`"]),
         (
-            "meshes = [\"parts/tip.obj\", \"parts/tip.obj\"]\nkind = \"static\"".into(),
-            vec![body, "2 `meshes` of a body that is static", "make it deformable"],
+            "meshes = [\"parts/tip.obj\", \"parts/tip.obj\"]\nkind = \"fixed\"".into(),
+            vec![body, "`meshes` must name one file if the body is fixed, got 2", "make the body deformable"],
         ),
-        (format!("{tip}poses = [{{}}]"), vec![body, "`poses` of a body that is deformable", "make it rigid"]),
+        (
+            format!("{tip}poses = [{{}}]"),
+            vec![body, "`poses` cannot be used if the body is deformable", "make the body rigid"],
+        ),
         (poses("[]"), vec![body, "`poses` is empty"]),
         (poses("[{ turn = 1 }]"), vec![body, "unknown field `turn`", "in `poses`"]),
         (poses("[{ translation = [1, 2] }]"), vec![body, "length 2", "`poses.translation`"]),
@@ -181,7 +192,7 @@ fn what_is_wrong_with_a_file_is_named() {
         ("mesh = \"parts/tip.stl\"".into(), vec!["tip.stl: has the extension \"stl\""]),
         (
             format!("{}\n[[body]]\nmesh = \"parts/tip.obj\"", poses("[{}, {}, {}]")),
-            vec!["body \"tip\" (line 10) has the name of body \"tip\" (line 5)", "`name` of its own"],
+            vec!["body \"tip\" (line 10) has the name of body \"tip\" (line 5)", "its own `name`"],
         ),
         (
             format!(
@@ -197,7 +208,7 @@ fn what_is_wrong_with_a_file_is_named() {
     for (text, said) in table {
         let path = beside(&folder, &text);
         for command in ["detect", "plan"] {
-            let message = refused(3, &[command, &path]);
+            let message = refused(3, &[super::path(command), vec![path.as_str()]].concat());
             assert_eq!(message.lines().count(), 1, "{message}");
             assert!(
                 said[0].ends_with("read") || said[0].contains(".stl") || message.contains("scene.toml: "),
@@ -209,11 +220,11 @@ fn what_is_wrong_with_a_file_is_named() {
         }
     }
     for (text, said) in [
-        ("", "has no bodies; give each a table"),
+        ("", "has no bodies; add a table"),
         ("[[bodies]]\n", "line 1: unknown field `bodies`, expected `body`"),
         ("body = 3\n", "line 1: invalid type: integer `3`"),
         ("[[body]\n", "line 1"),
-        ("[[body]]\nkind = \"static\"\n", "the body of line 1: no `mesh`"),
+        ("[[body]]\nkind = \"fixed\"\n", "the body of line 1: `mesh` is missing"),
     ] {
         let message = refused(3, &["detect", &folder.write("bad.toml", text)]);
         assert!(message.contains("bad.toml: ") && message.contains(said), "{text}: {message}");
@@ -247,9 +258,12 @@ fn a_scene_stands_alone() {
     let [scene, flat] = [&scene, &flat].map(String::as_str);
     for args in [&[scene, flat][..], &[flat, scene], &[scene, scene], &[scene, "--with", flat]] {
         let text = refused(2, &[&["detect"], args].concat());
-        assert!(text.contains("a scene (.toml) beside other files; give it alone"), "{args:?}: {text}");
+        assert!(
+            text.contains("a scene (.toml) cannot be combined with other files; give it alone"),
+            "{args:?}: {text}"
+        );
     }
-    assert!(refused(2, &["detect", scene, "--rebuild-every", "2"]).contains("there is one step"));
+    assert!(refused(2, &["detect", scene, "--rebuild-every", "2"]).contains("--rebuild-every has no effect"));
     assert!(refused(3, &["explain", scene, "--vf", "0", "0"]).contains("\"toml\", which no reader knows"));
     let moving = beside(&folder, "meshes = [\"parts/tip.obj\", \"parts/tip.obj\", \"parts/tip.obj\"]");
     assert!(refused(2, &["detect", &moving, "--repeat", "2"]).contains("each of several steps runs once"));
@@ -263,12 +277,12 @@ fn the_scene_of_the_programs_page_is_one() {
     for name in ["cloth_0", "cloth_1", "cloth_2", "ball", "ground"] {
         folder.write(&format!("{name}.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     }
-    let all = ok(&["detect", &folder.write("scene.toml", &text.replace(".ply", ".obj"))]);
-    assert!(all.starts_with("3 bodies, 3 triangles, 9 vertices, 3 frames; Continuous"), "{all}");
+    let all = ok(&["detect", &folder.write("scene.toml", &text.replace(".ply", ".obj")), "-v"]);
+    assert!(all.starts_with("3 bodies, 3 triangles, 9 vertices, 3 frames; continuous query"), "{all}");
 }
 
 #[test]
-fn self_contact_is_the_default_of_deformable_bodies() {
+fn self_collision_is_the_default_of_deformable_bodies() {
     let folder = Folder::new("scene-self");
     let crossed = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.2 0.2 -1\nv 0.2 0.3 1\nv 5 5 1\nf 1 2 3\nf 4 5 6\n";
     let crossed = folder.write("crossed.obj", crossed);
@@ -279,9 +293,9 @@ fn self_contact_is_the_default_of_deformable_bodies() {
         ("self_collision = true", 1),
         ("self_collision = false", 0),
         ("kind = \"rigid\"", 0),
-        ("kind = \"rigid\"\nself_contact = true", 1),
-        ("kind = \"static\"", 0),
-        ("kind = \"static\"\nself_contact = false", 0),
+        ("kind = \"rigid\"\nself_collision = true", 1),
+        ("kind = \"fixed\"", 0),
+        ("kind = \"fixed\"\nself_collision = false", 0),
     ] {
         let body = format!("[[body]]\nmesh = \"crossed.obj\"\n{text}\n");
         let two = folder.write("two.toml", &format!("{body}[[body]]\nmesh = \"far.obj\"\n"));
@@ -289,10 +303,10 @@ fn self_contact_is_the_default_of_deformable_bodies() {
         let one = folder.write("one.toml", &body);
         assert_eq!(contacts(&[&one]), Some(expected), "alone: {text}");
     }
-    let fixed = "[[body]]\nmesh = \"far.obj\"\n[[body]]\nmesh = \"crossed.obj\"\nkind = \"static\"\nself_contact = true\n";
+    let fixed = "[[body]]\nmesh = \"far.obj\"\n[[body]]\nmesh = \"crossed.obj\"\nkind = \"fixed\"\nself_collision = true\n";
     let text = refused(3, &["detect", &folder.write("fixed.toml", fixed)]);
     assert!(
-        text.contains("body of line 3") && text.contains("`self_collision` of a body that is static"),
+        text.contains("body of line 3") && text.contains("a fixed body never collides with itself"),
         "{text}"
     );
     assert_eq!(contacts(&[&crossed, "--with", &far]), Some(1));
@@ -308,25 +322,25 @@ fn a_turn_and_tolerances_of_bodies_are_told() {
     let scene = |angle: f64, kind: &str| {
         let (sin, cos) = (angle.to_radians() / 2.0).sin_cos();
         let text = format!(
-            "[[body]]\nmesh = \"bar.obj\"\nkind = \"rigid\"\nself_contact = true\n\
+            "[[body]]\nmesh = \"bar.obj\"\nkind = \"rigid\"\nself_collision = true\n\
              poses = [{{}}, {{ rotation = [0, 0, {sin}, {cos}] }}]\n[[body]]\nmesh = \"ground.obj\"\nkind = \"{kind}\"\n"
         );
         folder.write("scene.toml", &text)
     };
-    let turned = summary(&["detect", &scene(180.0, "static"), "--json"]);
+    let turned = summary(&["detect", &scene(180.0, "fixed"), "--json"]);
     let reason = &turned["caveats"][0];
     assert_eq!((reason["reason"].as_str(), reason["body"].as_u64()), (Some("turned"), Some(0)), "{turned}");
     assert!((reason["bulge"].as_f64().expect("a length") - 2.0).abs() < 1e-9, "{turned}");
     assert!(
         turned["tolerance"].as_f64().expect("a length") < 1e-3 && turned.get("largest_tolerance").is_none()
     );
-    let text = ok(&["detect", &scene(90.0, "static")]);
-    assert!(text.contains("caveats: body 0 turns by 90.0 degrees"), "{text}");
-    assert!(!ok(&["detect", &scene(29.9, "static")]).contains("turns by"));
+    let text = ok(&["detect", &scene(90.0, "fixed")]);
+    assert!(text.contains("caveat: body 0 turns by 90.0 degrees"), "{text}");
+    assert!(!ok(&["detect", &scene(29.9, "fixed")]).contains("turns by"));
     let both = summary(&["detect", &scene(10.0, "deformable"), "--json"]);
     let [least, largest] =
         ["tolerance", "largest_tolerance"].map(|key| both[key].as_f64().expect("a length"));
     assert!(least < 1e-3 && largest > 0.1, "{both}");
-    let plan = ok(&["plan", &scene(10.0, "deformable"), "--backend", "cpu"]);
-    assert!(plan.contains(" by the bodies of a pair"), "{plan}");
+    let plan = ok(&["lab", "plan", &scene(10.0, "deformable"), "--backend", "cpu"]);
+    assert!(plan.contains(" by the pair of bodies"), "{plan}");
 }

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 /// Frames of balls that meet, as files.
 fn frames(folder: &Folder, count: usize) -> Vec<String> {
     let dir = folder.path("");
-    ok(&["scene", "n-body", "--triangles", "600", "--frames", &count.to_string(), "--out", &dir]);
+    ok(&["lab", "scene", "n-body", "--triangles", "600", "--frames", &count.to_string(), "--out", &dir]);
     (0..count).map(|frame| folder.path(&format!("n-body_{frame:04}.ply"))).collect()
 }
 
@@ -79,7 +79,7 @@ fn rows_tell_their_step() {
                 serde_json::from_str::<Value>(&folder.read("a.json")).expect("JSON")["contacts"].take(),
             );
         }
-        let people = ok(&with(&files, &[question, fixed, &["--out", &csv]].concat()));
+        let people = ok(&with(&files, &[question, fixed, &["--out", &csv, "-v"]].concat()));
         assert_eq!(folder.read("a.csv"), rows, "{question:?}");
         ok(&with(&files, &[question, fixed, &["--out", &json]].concat()));
         let whole: Value = serde_json::from_str(&folder.read("a.json")).expect("JSON");
@@ -95,7 +95,7 @@ fn rows_tell_their_step() {
             let line =
                 people.lines().find(|line| line.starts_with(&format!("{name} {at}: "))).expect("a line");
             let hash = step["summary"]["hash"].as_str().expect("a hash");
-            assert!(line.ends_with(&format!("hash {hash}")) && line.contains("waited for"), "{line}");
+            assert!(line.ends_with(&format!("hash {hash}")) && line.contains("wall "), "{line}");
         }
         assert!(
             people.lines().last().expect("a sum").contains(&format!(" in {} {name}s", steps.len())),
@@ -128,7 +128,7 @@ fn another_mesh_rests_or_has_as_many_frames() {
     assert_eq!(tois(&["--with", &floor, &b0, &b1, &b2]), alone);
     assert_eq!(tois(&[&floor, &floor, &floor, "--with", &b0, &b1, &b2, "--earliest"]), alone);
     let text = refused(2, &["detect", &b0, &b1, &b2, "--with", &floor, &floor]);
-    assert!(text.contains("3 files for the mesh and 2 for --with") && text.contains("as many as"), "{text}");
+    assert!(text.contains("equal numbers of frames, got 3 and 2; give as many files"), "{text}");
     // What stands still between two frames is said.
     let text = ok(&["detect", &b0, &b0, &b1, "--with", &floor]);
     assert!(text.contains("step 0: ") && text.matches("both frames are the same").count() == 1, "{text}");
@@ -137,12 +137,15 @@ fn another_mesh_rests_or_has_as_many_frames() {
 #[test]
 fn what_one_question_takes_is_refused() {
     for (args, said) in [
-        (&["detect", "a", "b", "c", "--repeat", "3"][..], "--repeat would do nothing: each of several steps"),
-        (&["detect", "a", "b", "c", "--repeat", "3", "--only", "narrow"], "--only would do nothing"),
-        (&["detect", "a", "--rebuild-every", "3"], "--rebuild-every would do nothing: there is one step"),
+        (&["detect", "a", "b", "c", "--repeat", "3"][..], "--repeat has no effect: each of several steps"),
+        (&["detect", "a", "b", "c", "--repeat", "3", "--only", "narrow"], "--only has no effect"),
+        (
+            &["detect", "a", "--rebuild-every", "3"],
+            "--rebuild-every has no effect: the tree of the first step is new",
+        ),
         (&["detect", "a", "b", "--rebuild-every", "3"], "give more frames"),
-        (&["detect", "a", "b", "--rebuild", "never"], "--rebuild would do nothing"),
-        (&["detect", "a", "b", "c", "--solver", "exact"], "choose one of: certified"),
+        (&["detect", "a", "b", "--rebuild", "auto"], "--rebuild has no effect"),
+        (&["detect", "a", "b", "c", "--solver", "exact"], "use one of: certified"),
         (&["detect", "a", "b", "c", "--rebuild-every", "0"], "a whole number from 1"),
     ] {
         let text = refused(2, args);
@@ -177,7 +180,7 @@ fn frames_of_both_precisions_are_taken() {
     let wide = folder.write("b2.ply", &format!("{header}0.25 0.25 -1\n0.25 0.5 3\n5 5 3\n3 0 1 2\n"));
     let text = ok(&["detect", &b0, &b1, &wide, "--with", &floor, "--earliest"]);
     assert!(
-        text.contains("step 0: 0 contacts") && text.contains("the first in step 1 at t = 0.49"),
+        text.contains("step 0: no contact; ") && text.contains(", first in step 1 at t = 0.49"),
         "{text}"
     );
 }

@@ -1,11 +1,11 @@
-//! `nearmiss tables`: files, columns, pictures, refusals.
+//! `nearmiss lab tables`: files, columns, pictures, refusals.
 
 use std::process::{Command, Output};
 use support::folder::Folder;
 
 fn run(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_nearmiss"))
-        .arg("tables")
+        .args(["lab", "tables"])
         .args(args)
         .output()
         .expect("the program starts")
@@ -187,7 +187,7 @@ fn json_holds_all_rows() {
 fn files_are_a_scene() {
     let folder = Folder::new("tables-files");
     let made = Command::new(env!("CARGO_BIN_EXE_nearmiss"))
-        .args(["scene", "soup-moving", "--triangles", "200", "--out", folder.name()])
+        .args(["lab", "scene", "soup-moving", "--triangles", "200", "--out", folder.name()])
         .output()
         .expect("the program starts");
     assert!(made.status.success());
@@ -207,7 +207,8 @@ fn files_are_a_scene() {
     ok(&[&mesh[..], &["--scene", "cloth-ball", "--out", folder.name()]].concat());
     assert!(column(&read_csv(&folder, "figure-6.13.csv"), "ratio").iter().all(|ratio| !ratio.is_empty()));
     // A volume that the thesis has not has no ratio.
-    ok(&[&mesh[..], &["--scene", "cloth-ball", "--bv", "linear", "--out", folder.name()]].concat());
+    ok(&[&mesh[..], &["--scene", "cloth-ball", "--bounding-volume", "linear", "--out", folder.name()]]
+        .concat());
     let csv = read_csv(&folder, "figure-6.13.csv");
     assert!(column(&csv, "bv").iter().all(|bv| *bv == "linear"));
     assert!(column(&csv, "ratio").iter().all(|ratio| ratio.is_empty()));
@@ -251,7 +252,7 @@ fn what_is_not_known_is_refused_with_what_is() {
     assert!(unknown.contains("possible values") && unknown.contains("cloth-ball"), "{unknown}");
     let unknown = refused(2, &["--table", "6.15"]);
     assert!(unknown.contains("6.12") && unknown.contains("6.14"), "{unknown}");
-    let unknown = refused(2, &["--bv", "sphere"]);
+    let unknown = refused(2, &["--bounding-volume", "sphere"]);
     assert!(unknown.contains("aabb, linear, obb"), "{unknown}");
     refused(2, &["--frames", "1"]);
     refused(2, &["--mesh", "one.ply"]);

@@ -1,11 +1,15 @@
-//! `nearmiss trade`: rows, files and the headline, of small inputs; and that planted truths show.
+//! `nearmiss lab trade`: rows, files and the headline, of small inputs; and that planted truths show.
 
 use serde_json::Value;
 use std::process::{Command, Output};
 use support::folder::Folder;
 
 fn run(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_nearmiss")).arg("trade").args(args).output().expect("the program starts")
+    Command::new(env!("CARGO_BIN_EXE_nearmiss"))
+        .args(["lab", "trade"])
+        .args(args)
+        .output()
+        .expect("the program starts")
 }
 
 fn json(args: &[&str]) -> Value {
@@ -44,7 +48,7 @@ fn a_small_trade_has_every_part() {
     {
         assert!(of("choices", "solver", solver) >= 2, "{solver}");
     }
-    for bv in ["aabb", "linear", "obb", "obb-child"] {
+    for bv in ["aabb", "linear", "obb"] {
         assert!(of("choices", "bv", bv) >= 2, "{bv}");
     }
     // Positions cast to f32 far from the origin ask another question, and that shows.
@@ -114,7 +118,7 @@ fn query_files_are_read_decided_and_judged() {
 #[test]
 fn a_list_of_contacts_judges_a_mesh() {
     let folder = Folder::new("trade-mesh");
-    let scene = ["scene", "soup-moving", "--triangles", "60", "--out", &folder.path("")];
+    let scene = ["lab", "scene", "soup-moving", "--triangles", "60", "--out", &folder.path("")];
     let made = Command::new(env!("CARGO_BIN_EXE_nearmiss")).args(scene).output().expect("the program starts");
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
     let mesh = [folder.path("soup-moving_t0.ply"), folder.path("soup-moving_t1.ply")];

@@ -33,26 +33,29 @@ fn the_other_mesh_may_stand_before_or_behind() {
     }
     // Not right behind it: the mesh's own.
     assert_eq!(hash(&[&a, "--with", &b1, "--discrete", &a]).1, Some(2));
-    assert!(ok(&["plan", "--with", &b0, &a]).contains("Discrete, within and between"));
-    let between = ["plan", "--with", &b0, &a, "--no-self-collision"];
-    assert!(ok(&between).contains("Discrete, between"));
+    assert!(ok(&["lab", "plan", "--with", &b0, &a]).contains("discrete, within and between bodies"));
+    let between = ["lab", "plan", "--with", &b0, &a, "--no-self-collision"];
+    assert!(ok(&between).contains("discrete, between bodies"));
 
-    let explained = ok(&["explain", "--with", &b0, "--with", &b1, &a, &a, "--fv", "0", "0"]);
+    let explained = ok(&["explain", "--with", &a, "--with", &a, &b0, &b1, "--vf", "0", "0"]);
     assert!(explained.contains("vertex 0 of ") && explained.contains("t = 1/2"), "{explained}");
 }
 
 #[test]
 fn three_files_are_too_many_for_a_pair() {
     for (args, said) in [
-        (&["explain", "a", "--with", "b", "c", "d", "--vf", "0", "0"][..], "3 files for --with"),
+        (
+            &["explain", "a", "--with", "b", "c", "d", "--vf", "0", "0"][..],
+            "--with takes one or two files, got 3",
+        ),
         (
             &["explain", "--with", "b", "--with", "c", "--with", "d", "a", "--vf", "0", "0"],
-            "3 files for --with",
+            "--with takes one or two files, got 3",
         ),
-        (&["explain", "a", "b", "c", "--vf", "0", "0"], "3 files for the mesh"),
+        (&["explain", "a", "b", "c", "--vf", "0", "0"], "MESH takes one or two files, got 3"),
     ] {
         let text = refused(2, args);
-        assert!(text.contains(said) && text.contains("give one, or two"), "{args:?}: {text}");
+        assert!(text.contains(said) && text.contains("give one mesh, or both ends"), "{args:?}: {text}");
     }
     assert!(ok(&["detect", "--help"]).contains("--with B0 --with B1 A0 A1"));
 }

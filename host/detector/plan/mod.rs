@@ -47,8 +47,6 @@ pub struct Bodies {
     pub deformable: [usize; 2],
     /// Vertices of all bodies.
     pub vertices: usize,
-    /// Vertices of bodies that may move.
-    pub moving_vertices: usize,
 }
 
 /// A stage, and its launches.
@@ -112,7 +110,6 @@ impl Plan {
             };
             own[0] += 1;
             own[1] += body.face_count();
-            counts.moving_vertices += if body.kind() == BodyKind::Fixed { 0 } else { body.vertex_count() };
         }
         let mut transfers: BTreeMap<&'static str, [Count; 2]> = BTreeMap::new();
         for (way, all) in [&frame.writes, &frame.reads].into_iter().enumerate() {

@@ -1,5 +1,5 @@
 //! The cost of each faster choice in misses, lateness and false alarms: the results of `nearmiss
-//! trade`.
+//! lab trade`.
 //!
 //! Every solver is tested at every tolerance. Single cases have answers of the exact oracle: a
 //! built-in generator of hard contacts, and query files. Whole scenes are judged by the finest

@@ -1,5 +1,5 @@
 //! Figures 6.12 to 6.14 of the thesis, and further ones, measured here: the output of `nearmiss
-//! tables`.
+//! lab tables`.
 //!
 //! An animation is measured cell by cell: one motion, one volume, with or without a front. The tree
 //! is built at the first frame and refitted at all others, as in the thesis. A first pass over all

@@ -1,4 +1,4 @@
-//! Figures beside earlier ones.
+//! Figures compared with earlier ones.
 
 use super::Figures;
 use super::file::{Earlier, EarlierCase};
@@ -7,7 +7,7 @@ use super::measure::{Measured, TOTAL, WALL, called};
 use nearmiss::error::Error;
 use serde::Serialize;
 
-/// What an earlier file was, and what is not as it says.
+/// An earlier file, and the differences from it.
 #[derive(Debug, Serialize)]
 pub struct Against {
     /// The file.
@@ -36,8 +36,11 @@ pub fn may_limit(now: &Machine, earlier: &Earlier) -> Result<(), Error> {
         return Ok(());
     }
     Err(Error::InvalidArgument {
-        what: format!("--limit with {}, which is of {}: this is {now}", earlier.file, earlier.machine),
-        advice: "leave it out, or give --against a file of this machine with as many threads".into(),
+        what: format!(
+            "--limit needs a file of this machine, {now}, got {} of {}",
+            earlier.file, earlier.machine
+        ),
+        advice: "remove it, or give --against a file of this machine with as many threads".into(),
     })
 }
 
@@ -84,7 +87,7 @@ fn other_answer(now: &Measured, (hash, file): (&str, &str)) -> Option<Error> {
     (now.hash != hash).then(|| Error::Regression {
         what: now.called(),
         text: format!("the answer has the hash {}, and in {file} {hash}", now.hash),
-        advice: "find the change that made it; if it is meant, or the mesh is another, measure anew",
+        advice: "find the change that made it; if it is intended, measure again",
     })
 }
 
@@ -103,6 +106,6 @@ fn too_slow(now: &Measured, limit: f64, file: &str) -> Option<Error> {
             times.median_ms,
             times.earlier_ms.unwrap_or(0.0)
         ),
-        advice: "ask again when nothing else runs; then look for the change by its stages",
+        advice: "measure again on a quiet machine; then compare the stages",
     })
 }

@@ -1,8 +1,8 @@
-//! `tables`.
+//! `lab tables`.
 
-use super::args::{Profile, Table, TablesArgs};
-use super::progress::during;
+use crate::args::{Profile, Table, TablesArgs};
 use crate::output;
+use crate::progress::during;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::query::{Bv, Query};
@@ -10,7 +10,7 @@ use nearmiss_lab::scene::Bodies;
 use nearmiss_lab::tables::{self, Figures, Frames, Paper, Way};
 use std::process::ExitCode;
 
-/// Measures what was asked for, prints it, and writes it where `--out` says.
+/// Measures, prints, and writes to `--out`.
 pub fn tables(args: &TablesArgs) -> Result<ExitCode, Error> {
     args.report.out.as_deref().map_or(Ok(()), output::folder)?;
     let device = args.machine.open()?;
@@ -48,7 +48,7 @@ fn bodies(args: &TablesArgs, device: &Device, figures: &mut Figures) -> Result<(
     Ok(())
 }
 
-/// The smallest and, unless told, the largest of the sizes: on a GPU, on a CPU.
+/// The smallest size, and the default of the largest on a GPU and on a CPU.
 const SMALLEST: usize = 10_000;
 const LARGEST: [usize; 2] = [1_000_000, 100_000];
 
@@ -69,11 +69,11 @@ fn scale(args: &TablesArgs, device: &Device, figures: &mut Figures) -> Result<()
 fn scenes(args: &TablesArgs) -> Result<Vec<(String, usize)>, Error> {
     if let Some(file) = args.mesh.first() {
         return match args.scene.as_slice() {
-            [] => Ok(vec![(super::stem(file), 0)]),
+            [] => Ok(vec![(crate::stem(file), 0)]),
             [name] => Ok(vec![(name.clone(), 0)]),
             several => Err(Error::InvalidArgument {
-                what: format!("--mesh with {} scenes", several.len()),
-                advice: "name the one scene of the thesis that the frames are, or none".into(),
+                what: format!("--scene takes one name with --mesh, got {}", several.len()),
+                advice: "name the scene of the paper that the frames show, or none".into(),
             }),
         };
     }
@@ -87,9 +87,9 @@ fn profile(args: &TablesArgs) -> &'static str {
     args.profile.map_or("fastest", Profile::name)
 }
 
-/// The volumes asked for, each once.
+/// The chosen volumes, each once.
 fn volumes(args: &TablesArgs) -> Vec<Bv> {
-    Bv::ALL.into_iter().filter(|bv| args.bv.contains(bv)).collect()
+    Bv::ALL.into_iter().filter(|bv| args.bounding_volume.contains(bv)).collect()
 }
 
 /// Measures one scene.
@@ -101,7 +101,7 @@ fn scene(args: &TablesArgs, device: &Device, frames: &Frames, figures: &mut Figu
     if wanted(Table::Build) {
         // Every construction is by way of axis-aligned boxes.
         let mut built = Vec::new();
-        for bv in Bv::ALL.into_iter().filter(|bv| *bv == Bv::Aabb || args.bv.contains(bv)) {
+        for bv in Bv::ALL.into_iter().filter(|bv| *bv == Bv::Aabb || args.bounding_volume.contains(bv)) {
             let trees = || tables::build(device, frames, bv, walk);
             built.push(during(format!("{name}: trees in {}", bv.name()), trees)?);
         }

@@ -1,7 +1,7 @@
-//! One question of one case: asked frame after frame.
+//! One query of one case, frame after frame.
 
 use super::cases::inputs;
-use super::question::Question;
+use crate::args::Question;
 use crate::detect::middle;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
@@ -54,7 +54,7 @@ pub struct Times {
     pub ratio: Option<f64>,
 }
 
-/// What a question of a case came to.
+/// The figures of a query of a case.
 #[derive(Clone, Debug, Serialize)]
 pub struct Measured {
     /// The case.
@@ -63,11 +63,11 @@ pub struct Measured {
     pub triangles: usize,
     /// Its bodies.
     pub bodies: usize,
-    /// What was asked.
+    /// The query.
     pub question: &'static str,
-    /// Pairs that the narrow test was asked.
+    /// Pairs that reached the narrow phase.
     pub candidates: u64,
-    /// What was found.
+    /// Contacts found.
     pub contacts: usize,
     /// Hash of the answer, sixteen hexadecimal digits: that of every frame.
     pub hash: String,
@@ -93,7 +93,8 @@ pub fn called(case: &str, question: &str) -> String {
     format!("{case}, {question}")
 }
 
-/// Asks the step that the scene is in so often. Every frame is told where all bodies are, and builds its tree anew before.
+/// Runs the step of the scene `frames` times. Each frame is given all motions, and rebuilds its tree
+/// before.
 ///
 /// # Errors
 /// Those of the device; [`Error::Bug`] where two frames differ.

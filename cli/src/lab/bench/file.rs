@@ -72,7 +72,7 @@ pub struct Earlier {
 }
 
 impl Earlier {
-    /// A question of a case; none where the file has not asked it.
+    /// A query of a case, if the file has it.
     pub fn of(&self, case: &str, question: &str) -> Option<&EarlierCase> {
         self.cases.iter().find(|of| of.case == case && of.question == question)
     }
@@ -122,18 +122,19 @@ pub fn read(path: &Path) -> Result<Earlier, Error> {
         .map(|earlier| Earlier { file: path.display().to_string(), ..earlier })
 }
 
-/// What is wrong, and what to do.
+/// A fault, and its remedy.
 type Wrong = (String, String);
 
-/// What to do with a file that is not as it was written.
-const ANEW: &str = "mend it, or measure anew with nearmiss bench --out DIR";
+/// The remedy for a file that was changed.
+const ANEW: &str = "fix it, or measure again with nearmiss lab bench --out DIR";
 
 fn parse(text: &str) -> Result<Earlier, Wrong> {
     let anew = |what: String| (what, ANEW.to_owned());
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let heads = reader.headers().map_err(|e| anew(e.to_string()))?.clone();
     if let Some(missing) = COLUMNS.iter().find(|column| !heads.iter().any(|head| head == **column)) {
-        let advice = format!("give a file that nearmiss bench wrote, with the columns {}", COLUMNS.join(","));
+        let advice =
+            format!("give a file that nearmiss lab bench wrote, with the columns {}", COLUMNS.join(","));
         return Err((format!("line 1: has no column {missing}"), advice));
     }
     let mut found: Option<Earlier> = None;

@@ -1,9 +1,9 @@
-//! `trade`.
+//! `lab trade`.
 
-use super::args::TradeArgs;
-use super::detect::body;
-use super::progress::during;
+use crate::args::TradeArgs;
+use crate::detect::body;
 use crate::output;
+use crate::progress::during;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::memory;
@@ -26,7 +26,7 @@ const OF_QUERIES: f64 = 1e-6;
 /// Most bytes of all questions of a number of cases, each: kinds, sizes, answers.
 const OF_A_CASE: u64 = 64_000;
 
-/// Measures what was asked for, prints it, and writes it where `--out` says.
+/// Measures, prints, and writes to `--out`.
 pub fn trade(args: &TradeArgs) -> Result<ExitCode, Error> {
     args.report.out.as_deref().map_or(Ok(()), output::folder)?;
     let device = args.machine.open()?;
@@ -126,7 +126,7 @@ fn generated(args: &TradeArgs, device: &Device, all: &mut Trade) -> Result<(), E
 fn files(args: &TradeArgs, device: &Device, all: &mut Trade) -> Result<(), Error> {
     let body = body(&args.mesh)?;
     let truth = args.truth.as_deref().map(list).transpose()?;
-    scene(args, device, &known(device, &super::stem(&args.mesh[0]), body, truth)?, all)
+    scene(args, device, &known(device, &crate::stem(&args.mesh[0]), body, truth)?, all)
 }
 
 fn known(

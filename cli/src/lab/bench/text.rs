@@ -6,7 +6,7 @@ use super::measure::{Measured, STAGES, Times, WARM_UP};
 use nearmiss::words::counted;
 use nearmiss_lab::tables::digits;
 
-/// A block a question of a case; then what is not as in the earlier file.
+/// A block for each query of a case; then the differences from the earlier file.
 pub fn text(all: &Figures) -> String {
     let frames = counted(all.frames.into(), "frame", "frames");
     let mut text = format!(
@@ -14,9 +14,10 @@ pub fn text(all: &Figures) -> String {
         all.machine, all.version
     );
     if let Some(against) = &all.against {
-        text += &format!("beside {}: {}, version {}\n", against.file, against.machine, against.version);
+        text +=
+            &format!("compared with {}: {}, version {}\n", against.file, against.machine, against.version);
         if against.is_other_machine {
-            text += "that is another machine: ratios compare machines, too\n";
+            text += "that is another machine: ratios compare machines too\n";
         }
     }
     for (at, of) in all.cases.iter().enumerate() {
@@ -32,7 +33,7 @@ pub fn text(all: &Figures) -> String {
     text
 }
 
-/// What was found, and a table of times.
+/// The result, and a table of times.
 fn block(of: &Measured) -> String {
     let mut text = format!(
         "{}: {}, {}, {:.1} MB, hash {}\n",
@@ -44,7 +45,7 @@ fn block(of: &Measured) -> String {
     );
     if of.reruns > 0 {
         let parts = counted(of.reruns, "part of a frame", "parts of a frame");
-        text += &format!("  {parts} ran again for want of room: times of such frames are too long\n");
+        text += &format!("  {parts} ran again because a buffer was too small: their times are too long\n");
     }
     text += &line("", STAGES.map(|(stage, _)| stage.to_owned()));
     let mut row = |name: &str, ms: &dyn Fn(&Times) -> Option<f64>| {
@@ -66,7 +67,7 @@ fn line(name: &str, cells: impl IntoIterator<Item = String>) -> String {
     format!("  {name:<11}{cells}\n")
 }
 
-/// What is not as in the earlier file.
+/// The differences from the earlier file.
 fn remarks(against: &Against) -> String {
     let mut text = String::from("\n");
     for (names, of) in [(&against.only_now, "not in"), (&against.only_earlier, "only in")] {
@@ -78,7 +79,7 @@ fn remarks(against: &Against) -> String {
         text += &format!("FAULT {fault}\n");
     }
     if against.faults.is_empty() {
-        text += "every answer that is in both has the same hash\n";
+        text += "all answers in both have the same hash\n";
     }
     text
 }

@@ -1,7 +1,6 @@
-//! Scenes that are asked: a fixed list, and meshes from files.
+//! The scenes: a fixed list, and meshes from files.
 
-use super::question::Question;
-use crate::args::BenchArgs;
+use crate::args::{BenchArgs, Question};
 use crate::detect::body;
 use crate::stem;
 use nearmiss::error::Error;
@@ -21,7 +20,7 @@ const SEED: u64 = 1;
 pub struct Generated {
     /// How it is named.
     pub name: &'static str,
-    /// What it is.
+    /// Its description.
     pub about: &'static str,
     make: fn() -> Result<Scene, Error>,
 }
@@ -51,17 +50,17 @@ pub const GENERATED: [Generated; 7] = [
     },
     Generated {
         name: "pile",
-        about: "200 rigid balls under a cloth, on static ground",
+        about: "200 rigid balls under a cloth, on fixed ground",
         make: || at_first_step(&Bodies::pile(200, 60, 40)?),
     },
     Generated {
         name: "worlds",
-        about: "100 environments of eight rigid balls each, all in one place",
+        about: "100 environments of eight rigid balls each, in one place",
         make: || at_first_step(&Bodies::worlds(100, 8)?),
     },
     Generated {
         name: "apart",
-        about: "the cloth of draped twice, side by side: two bodies that nowhere meet",
+        about: "the cloth of draped twice, side by side: two bodies without a contact",
         make: || apart(scene("draped", TRIANGLES, SEED)?),
     },
 ];
@@ -82,7 +81,7 @@ fn at_first_step(all: &Bodies) -> Result<Scene, Error> {
     Ok(scene)
 }
 
-/// A body, and the same beside it along x, by a twentieth more than its extent.
+/// A body and its copy, moved along x by a twentieth more than its extent.
 fn apart(body: Body) -> Result<Scene, Error> {
     let all: Vec<[f64; 3]> = body.ends().iter().flat_map(|end| end.to_f64()).collect();
     let low = all.iter().map(|p| p[0]).fold(f64::INFINITY, f64::min);
@@ -97,7 +96,7 @@ fn apart(body: Body) -> Result<Scene, Error> {
     Ok([body, other].map(|body| body.with_filter(CollisionFilter::without_self_collision())).to_vec().into())
 }
 
-/// What a case is made from.
+/// The source of a case.
 enum Source {
     Generated(fn() -> Result<Scene, Error>),
     Files(Vec<PathBuf>),
@@ -138,21 +137,21 @@ pub fn chosen(args: &BenchArgs) -> Result<Vec<Chosen>, Error> {
     let names: Vec<String> = all.iter().map(|case| case.name.clone()).collect();
     if let Some((_, twice)) = names.iter().enumerate().find(|(at, name)| names[..*at].contains(name)) {
         return Err(Error::InvalidArgument {
-            what: format!("two cases are named {twice}"),
-            advice: "figures are told by these names: give the file another".into(),
+            what: format!("--mesh names a case twice, got {twice}"),
+            advice: "rename the file".into(),
         });
     }
     if let Some(unknown) = args.case.iter().find(|name| !names.contains(name)) {
         return Err(Error::InvalidArgument {
-            what: format!("no case is named {unknown}"),
-            advice: format!("choose among: {}", names.join(", ")),
+            what: format!("--case is unknown, got {unknown}"),
+            advice: format!("use one of: {}", names.join(", ")),
         });
     }
     let read = &names[GENERATED.len()..];
     if let Some(left_out) = read.iter().find(|name| !args.has_case(name)) {
         return Err(Error::InvalidArgument {
-            what: format!("the file of --mesh {left_out} would do nothing: --case names other cases"),
-            advice: format!("add {left_out} to --case, or leave it out"),
+            what: format!("--mesh {left_out} has no effect: --case names other cases"),
+            advice: format!("add {left_out} to --case, or remove it"),
         });
     }
     all.retain(|case| args.has_case(&case.name));
@@ -166,7 +165,7 @@ pub fn questions(args: &BenchArgs) -> impl Iterator<Item = Question> {
     all.filter(|question| args.has_question(question.name()))
 }
 
-/// Where everything that can move is in the step that the scene is in, as a simulator tells it frame after frame.
+/// The motions of all bodies that can move, for the step of the scene.
 pub fn inputs(scene: &Scene) -> Vec<(BodyId, Motion<'_>)> {
     let input = |id| {
         let body = scene.get(id)?;
@@ -174,7 +173,7 @@ pub fn inputs(scene: &Scene) -> Vec<(BodyId, Motion<'_>)> {
             BodyKind::Rigid => Motion::PoseStep(body.poses()),
             BodyKind::Deformable if body.is_moving() => Motion::Step(body.ends().map(Into::into)),
             BodyKind::Deformable => Motion::positions(body.positions_t0()),
-            // Of kinds that do not move there is nothing to tell.
+            // Other kinds do not move.
             _ => return None,
         };
         Some((id, to))

@@ -1,42 +1,13 @@
-//! What is asked of a case.
+//! The queries of a case.
 
-use clap::ValueEnum;
+use crate::args::Question;
 use nearmiss::mesh::Body;
 use nearmiss::pipeline::of_edges;
 use nearmiss::query::{Certified, Continuous, Query};
 
-/// Questions, each with all choices at their defaults.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Question {
-    /// Triangle pairs that share a point at t = 0.
-    Discrete,
-    /// Feature pairs that meet during the step, certified.
-    Continuous,
-    /// The same, with those that come within a hundredth of the mean edge.
-    Separation,
-    /// The first time of contact.
-    Earliest,
-    /// Feature pairs within a tenth of the mean edge at t = 0.
-    Near,
-    /// The two nearest triangles of different bodies at t = 0.
-    Distance,
-}
-
 impl Question {
-    /// Its name, on the command line and in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Question::Discrete => "discrete",
-            Question::Continuous => "continuous",
-            Question::Separation => "separation",
-            Question::Earliest => "earliest",
-            Question::Near => "near",
-            Question::Distance => "distance",
-        }
-    }
-
-    /// Whether such bodies can be asked it: of what stands still there is no step, of one body no distance, and of points no
-    /// part of an edge.
+    /// Whether it fits the bodies. Bodies at rest have no step, one body has no distance, and points
+    /// have no edge.
     pub fn is_for(self, bodies: &[Body]) -> bool {
         match self {
             Question::Discrete => true,
@@ -52,7 +23,7 @@ impl Question {
         }
     }
 
-    /// The query, of bodies with such edges.
+    /// The query; its lengths depend on the mean edge of the bodies.
     pub fn query(self, bodies: &[Body]) -> Query {
         let edge = || of_edges(bodies) / Certified::TOLERANCE;
         match self {

@@ -1,7 +1,5 @@
 //! A plan as tables, and as JSON.
 
-use super::model::Model;
-use super::times::Row;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::plan::{Plan, PlannedStage};
@@ -59,17 +57,13 @@ fn stage_rows(text: &mut String, stage: &PlannedStage) {
 ///
 /// # Errors
 /// None that is known.
-pub fn json(
-    detector: &mut OneQuery,
-    device: &Device,
-    (plan, times): (Option<&Plan>, Option<(&Model, &Vec<Row>)>),
-) -> Result<String, Error> {
+pub fn json(detector: &mut OneQuery, device: &Device, plan: Option<&Plan>) -> Result<String, Error> {
     #[derive(Serialize)]
     struct All<'a> {
         device: String,
         backend: &'static str,
         query: nearmiss::query::QueryKind,
-        bv: &'static str,
+        bounding_volume: &'static str,
         solver: nearmiss::query::Solver,
         tolerance: Option<f64>,
         #[serde(skip_serializing_if = "Option::is_none")]
@@ -81,8 +75,6 @@ pub fn json(
         bytes_to_host: Option<u64>,
         #[serde(flatten)]
         plan: Option<&'a Plan>,
-        times: Option<&'a Vec<Row>>,
-        model: Option<&'a Model>,
     }
     let query = *detector.query();
     let (tolerance, largest) = (detector.tolerance(), detector.largest_tolerance());
@@ -90,7 +82,7 @@ pub fn json(
         device: device.name(),
         backend: device.backend(),
         query: query.kind(),
-        bv: query.bv().name(),
+        bounding_volume: query.bv().name(),
         solver: query.solver(),
         tolerance,
         largest_tolerance: largest.filter(|_| largest != tolerance),
@@ -100,8 +92,6 @@ pub fn json(
         bytes_to_device: plan.map(Plan::bytes_to_device),
         bytes_to_host: plan.map(Plan::bytes_to_host),
         plan,
-        times: times.map(|(_, rows)| rows),
-        model: times.map(|(model, _)| model),
     };
     serde_json::to_string(&all).map(|text| text + "\n").map_err(|e| Error::Bug { what: e.to_string() })
 }

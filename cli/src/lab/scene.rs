@@ -1,8 +1,8 @@
-//! `scene`.
+//! `lab scene`.
 
-use super::args::SceneArgs;
-use super::progress::during;
+use crate::args::SceneArgs;
 use crate::output::{self, Target, print};
+use crate::progress::during;
 use nearmiss::error::Error;
 use nearmiss::mesh::Mesh;
 use nearmiss::words::counted;
@@ -11,19 +11,19 @@ use nearmiss_lab::scene::{ANIMATIONS, Options, animation_with, scene as formula}
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Writes a scene as PLY frames and says which.
+/// Writes a scene as PLY files and prints their names.
 pub fn scene(args: &SceneArgs) -> Result<ExitCode, Error> {
     if ANIMATIONS.contains(&args.name.as_str()) { animated(args) } else { by_formula(args) }
 }
 
 fn by_formula(args: &SceneArgs) -> Result<ExitCode, Error> {
-    // Of any size it has as many.
+    // The number does not depend on the size.
     let has = formula(&args.name, 8, args.seed)?.frames().len() as u64;
     let asked = args.frames.map_or(has, u64::from);
     if asked > has {
         return Err(Error::InvalidArgument {
-            what: format!("{} of {}, which has {has}", counted(asked, "frame", "frames"), args.name),
-            advice: format!("choose one that goes on: {}", ANIMATIONS.join(", ")),
+            what: format!("--frames must be at most {has} for the scene {}, got {asked}", args.name),
+            advice: format!("use an animation: {}", ANIMATIONS.join(", ")),
         });
     }
     output::folder(&args.out)?;
@@ -59,7 +59,7 @@ fn write(args: &SceneArgs, frame: &str, mesh: &Mesh) -> Result<(), Error> {
     print(&format!("{}: {triangles}\n", path.display()))
 }
 
-/// Triangles asked for, or those that the scene usually has.
+/// The triangles of `--triangles`, or the usual ones of the scene.
 fn triangles_of(args: &SceneArgs) -> usize {
     args.triangles.unwrap_or(nearmiss_lab::scene::usual(&args.name))
 }

@@ -1,4 +1,4 @@
-//! `bench`: a fixed list of cases, timed stage by stage, beside an earlier file of the same.
+//! `lab bench`: a fixed list of cases, timed stage by stage and compared with an earlier file.
 
 mod cases;
 mod compare;
@@ -8,8 +8,7 @@ mod measure;
 mod question;
 mod text;
 
-pub use cases::GENERATED;
-pub use question::Question;
+use cases::GENERATED;
 
 use crate::args::BenchArgs;
 use crate::output;
@@ -23,10 +22,10 @@ use nearmiss::error::Error;
 use serde::Serialize;
 use std::process::ExitCode;
 
-/// What was measured.
+/// The measured figures.
 #[derive(Debug, Serialize)]
 pub struct Figures {
-    /// Where.
+    /// The machine.
     #[serde(flatten)]
     pub machine: Machine,
     /// By which version of nearmiss.
@@ -35,11 +34,11 @@ pub struct Figures {
     pub frames: u32,
     /// A question of a case each, those of a case together.
     pub cases: Vec<Measured>,
-    /// What an earlier file says.
+    /// The comparison with an earlier file.
     pub against: Option<Against>,
 }
 
-/// Measures what was asked for, prints it, and writes it where `--out` says.
+/// Measures, prints, and writes to `--out`.
 ///
 /// # Errors
 /// [`Error::InvalidArgument`] for what cannot be compared, [`Error::Input`] for an earlier file that cannot be used, both before anything is
@@ -76,8 +75,9 @@ pub fn bench(args: &BenchArgs) -> Result<ExitCode, Error> {
     }
     if all.cases.is_empty() {
         return Err(Error::InvalidArgument {
-            what: "no case can be asked that".into(),
-            advice: "of what stands still there is no step, and of one body no distance: choose another question or case".into(),
+            what: "--question fits none of the cases".into(),
+            advice: "use another query or case: bodies at rest have no step, and one body has no distance"
+                .into(),
         });
     }
     let is_chosen = |case: &str, question: &str| args.has_case(case) && args.has_question(question);
@@ -98,8 +98,8 @@ fn comparable(args: &BenchArgs, chosen: &[cases::Chosen], earlier: &Earlier) -> 
         return Ok(());
     }
     Err(Error::InvalidArgument {
-        what: format!("--against would do nothing: {} has none of what is asked", earlier.file),
-        advice: "give a file of the same cases and questions, or leave it out".into(),
+        what: format!("--against has no effect: {} has none of these cases and queries", earlier.file),
+        advice: "give a file that has them, or remove it".into(),
     })
 }
 

@@ -1,0 +1,142 @@
+//! From options to a query. Options that a query or its solver does not have are refused.
+
+use super::DetectArgs;
+use crate::report::Format;
+use nearmiss::error::Error;
+use nearmiss::query::{
+    Certified, Continuous, ContinuousSolver, Discrete, Distance, Earliest, Near, Query, QueryKind, Rebuild,
+    Search, Solver, TriangleTest,
+};
+use nearmiss::scene::CollisionFilter;
+
+fn refused<T>(what: impl Into<String>, advice: impl Into<String>) -> Result<T, Error> {
+    Err(Error::InvalidArgument { what: what.into(), advice: advice.into() })
+}
+
+impl DetectArgs {
+    /// The filter of a mesh of the command line.
+    pub fn filter(&self) -> CollisionFilter {
+        if self.query.no_self_collision {
+            CollisionFilter::without_self_collision()
+        } else {
+            CollisionFilter::default()
+        }
+    }
+
+    /// The query for bodies that move, or that rest.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] for options that exclude each other, and for numbers out of range.
+    pub fn to_query(&self, moving: bool) -> Result<Query, Error> {
+        let kind = self.kind(moving);
+        let solver = self.research.solver.unwrap_or(Solver::default_for(kind));
+        if !solver.answers(kind) {
+            let known: Vec<_> = kind.solvers().iter().map(|solver| solver.name()).collect();
+            let what = format!("--solver {solver} cannot be used with a {kind} query");
+            return refused(what, format!("use one of: {}", known.join(", ")));
+        }
+        if self.query.assume_free && kind.is_at_rest() {
+            let what = format!("--assume-free has no effect: a {kind} query has no step");
+            return refused(what, "remove it, or add --continuous or --earliest");
+        }
+        if let Some(option) = self.accuracy.given().filter(|_| !solver.is_certified()) {
+            let what = format!("{option} cannot be used with --solver {solver}");
+            return refused(what, "remove it, or use --continuous or --earliest with a certified solver");
+        }
+        let query = self.of_kind(kind, solver);
+        query.check()?;
+        self.places(kind)?;
+        if self.query.adjacent && solver != Solver::Exact {
+            let what = format!("--adjacent cannot be used with a {kind} query by {solver}");
+            return refused(what, "use --discrete with the solver exact");
+        }
+        Ok(query)
+    }
+
+    /// The query of a kind.
+    fn of_kind(&self, kind: QueryKind, solver: Solver) -> Query {
+        let search = self.search();
+        match (self.query.near, ContinuousSolver::named(solver)) {
+            _ if self.query.distance => Distance { search }.into(),
+            (Some(distance), _) => Near { distance, search }.into(),
+            (None, Some(solver)) => {
+                let (solver, assume_free) = (self.limited(solver), self.query.assume_free);
+                if kind == QueryKind::Earliest {
+                    Earliest { solver, search, assume_free }.into()
+                } else {
+                    Continuous { solver, search, assume_free }.into()
+                }
+            }
+            (None, None) if solver == Solver::Moller => {
+                Discrete { test: TriangleTest::Moller, search }.into()
+            }
+            (None, None) => {
+                Discrete { test: TriangleTest::Exact { adjacent: self.query.adjacent }, search }.into()
+            }
+        }
+    }
+
+    fn search(&self) -> Search {
+        let research = &self.research;
+        Search {
+            broad: research.broad_phase,
+            bv: research.bounding_volume,
+            refit: research.refit,
+            traversal: research.walk(),
+            // Every so many frames, and at no other.
+            rebuild: research.rebuild.or(research.rebuild_every.map(|_| Rebuild::Manual)),
+            ..Search::default()
+        }
+    }
+
+    /// Whether `--out` is a `.vtp`, which always has the places of contacts.
+    pub fn writes_vtp(&self) -> bool {
+        self.out.out.as_ref().is_some_and(|out| Format::of(out).is_ok_and(|of| of == Format::Vtp))
+    }
+
+    /// Refuses places of contacts for a query that has none.
+    fn places(&self, kind: QueryKind) -> Result<(), Error> {
+        let vtp = self.writes_vtp();
+        match kind {
+            QueryKind::Discrete | QueryKind::Earliest if vtp || self.out.geometry => refused(
+                format!("a .vtp and --geometry need points, and a {kind} query has none"),
+                "use --continuous or --near, or --out-mesh for a coloured mesh",
+            ),
+            _ if vtp && self.out.geometry => {
+                refused("--geometry has no effect: a .vtp always has it", "remove it")
+            }
+            _ if vtp && self.out.file_faces => {
+                refused("--file-faces has no effect: a .vtp names triangles", "remove it, or write .csv")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The kind of query.
+    fn kind(&self, moving: bool) -> QueryKind {
+        let query = &self.query;
+        match (query.discrete, query.continuous, query.earliest) {
+            _ if query.near.is_some() => QueryKind::Near,
+            _ if query.distance => QueryKind::Distance,
+            (_, _, true) => QueryKind::Earliest,
+            (_, true, _) => QueryKind::Continuous,
+            (true, _, _) => QueryKind::Discrete,
+            _ if moving => QueryKind::Continuous,
+            _ => QueryKind::Discrete,
+        }
+    }
+
+    /// The solver, with the limits that were given.
+    fn limited(&self, solver: ContinuousSolver) -> ContinuousSolver {
+        match solver {
+            ContinuousSolver::Certified(Certified { precision, .. }) => Certified {
+                precision,
+                tolerance: self.accuracy.tolerance,
+                max_iterations: self.accuracy.max_iterations,
+                min_separation: self.accuracy.min_separation.unwrap_or(0.0),
+            }
+            .into(),
+            other => other,
+        }
+    }
+}
