@@ -7,6 +7,7 @@ use crate::contacts::{Answer, Contacts, DeviceAnswer};
 use crate::device::emulator::start_threads;
 use crate::error::Error;
 use crate::pipeline::collect::collect;
+use crate::pipeline::not_prepared;
 use crate::query::{Query, TypedQuery};
 use crate::scene::{BodyId, DeviceMotion, Motion};
 use std::time::Instant;
@@ -138,15 +139,11 @@ impl Detector {
         start_threads()?;
         self.engine.answered = None;
         self.read_again(true);
-        let may_meet = self.may_meet();
+        let is_empty = self.is_prepared();
         let submitted = match &mut self.engine.pipeline {
             Some(pipeline) => pipeline.submit(),
-            None if may_meet => Err(Error::InvalidArgument {
-                what: "a submission that is not prepared".into(),
-                advice: "call `prepare` first, and again after every other call that changes the detector"
-                    .into(),
-            }),
-            None => Ok(()),
+            None if is_empty => Ok(()),
+            None => Err(not_prepared()),
         };
         self.ended(submitted)
     }
@@ -174,10 +171,14 @@ impl Detector {
         let question = self.question(query)?;
         let layout = self.layout(&query)?;
         self.read_again(true);
-        // Nothing was submitted, or its memory is gone after an interrupted call: the query runs.
-        let Some(pipeline) = &mut self.engine.pipeline else { return self.answer(&question, start) };
-        let place = pipeline.place_of(&query).filter(|_| self.placed.answers(&query));
-        let found = place.map_or(Ok(None), |at| pipeline.collect(at))?;
+        let answers = self.placed.answers(&query);
+        let found = match &mut self.engine.pipeline {
+            Some(pipeline) => {
+                let place = pipeline.place_of(&query).filter(|_| answers);
+                place.map_or(Ok(None), |at| pipeline.collect(at))?
+            }
+            None => None,
+        };
         let whole = found.map(|found| {
             let seen = found.0.seen;
             collect(found, &query, &layout, &self.device.looks()).map(|contacts| Answered { contacts, seen })

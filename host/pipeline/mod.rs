@@ -24,6 +24,7 @@ pub use broad::Share;
 pub use layout::{FeatureTopology, Layout, Offsets};
 pub use placing::{Moved, Seen, Whereabouts};
 pub use tolerance::{Tolerances, of_pair};
+pub(crate) use typed::not_prepared;
 pub use typed::{Found, Hits, Listed, Pipeline, Submits};
 
 #[doc(hidden)]

@@ -15,7 +15,7 @@ mod submit;
 mod submitted;
 
 pub use found::{Found, Hits, Listed, in_order};
-pub use submit::Submits;
+pub use submit::{Submits, not_prepared};
 
 use super::broad::{BroadPhase, Share};
 use super::list::List;

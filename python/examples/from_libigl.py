@@ -2,8 +2,8 @@
 
     pip install libigl nearmiss && python from_libigl.py [cells a side, default 100]
 
-Both decide by exact signs, so they tell the same pairs, with and without those that share a vertex. CGAL's takes vertices at one place for one, whatever
-their indices, and leaves out triangles without area and those that lie on each other corner by corner: there are none here. Exits with 1 where the two disagree.
+Both decide by exact signs, so they report the same pairs, with and without those that share a vertex. CGAL's test merges vertices
+at one place. It leaves out triangles without area and duplicates; there are none here. Exits with 1 if the two differ.
 """
 
 import sys

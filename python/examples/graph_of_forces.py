@@ -14,7 +14,7 @@ folded = np.stack([abs(x - 0.5), y, 0.1 * np.sin(25 * x)], 1)
 
 def views(detector):
     """The answer as tensors that share the detector's memory."""
-    answer = detector.on_device()
+    answer = detector.on_device(near)
     assert len(answer.lists) == 1                          # canonical order: vf rows, then ee rows
     rows = {name: torch.from_dlpack(column) for name, column in answer.lists[0].items()}
     return rows, torch.from_dlpack(answer.status), torch.from_dlpack(answer.edges).long()
@@ -22,9 +22,9 @@ def views(detector):
 
 def corners(rows, status, edges):
     """Vertices and weights of both features; shapes are fixed, unused rows weigh nothing."""
-    row = torch.arange(len(rows["indices"]), device=edges.device)
+    row = torch.arange(len(rows["feature_a"]), device=edges.device)
     is_face, is_used = (row < status[0])[:, None], (row < status[0] + status[1])[:, None]
-    first, second = rows["indices"].long().where(is_used, 0).unbind(1)
+    first, second = (rows[name].long().where(is_used[:, 0], 0) for name in ("feature_a", "feature_b"))
     u, v = rows["at"].where(is_used, 0).unbind(1)
     one, zero = torch.ones_like(u), torch.zeros_like(u)
     edge_a, edge_b = edges[first % len(edges)], edges[second % len(edges)]
@@ -51,12 +51,12 @@ with torch.cuda.stream(stream):
     position = torch.from_numpy(folded).cuda()
     triangles = torch.from_numpy(faces).cuda()
     force = torch.zeros_like(position)
-    detector = nearmiss.Detector(nearmiss.Body(folded, faces), nearmiss.Near(DHAT),
-                                 nearmiss.Device(stream=stream))
+    detector = nearmiss.Detector(nearmiss.Body(folded, faces), device=nearmiss.Device(stream=stream))
+    near = nearmiss.Near(DHAT)
     graph, frame = None, 0
     while frame < 100:
         if graph is None or not detector.is_prepared:
-            detector.prepare({0: position})                # the array stays; write into it
+            detector.prepare({0: position}, [near])        # the array stays; write into it
             answer = views(detector)
             detector.submit()
             add_forces(*answer)                            # once, so that torch loads its kernels
@@ -67,7 +67,7 @@ with torch.cuda.stream(stream):
                 add_forces(*answer)
         graph.replay()
         if int(answer[1][2]):                              # a buffer was too short: rows are missing
-            detector.collect()                             # grows it; the detector is unprepared
+            detector.collect(near)                         # grows it; the detector is unprepared
             continue
         position.add_(force, alpha=0.1)
         frame += 1

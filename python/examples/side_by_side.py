@@ -1,4 +1,4 @@
-"""Two libraries asked the same, a row a question."""
+"""The same queries of two libraries, a row a query."""
 
 import statistics
 import sys
@@ -13,7 +13,7 @@ class Table:
         print(f"{'':42} {theirs:>28} {ours:>28}")
 
     def row(self, what, theirs, ours, times=5):
-        """Asks both, prints the last values and the medians of the milliseconds, and returns the values."""
+        """Run both, print the last values and the medians of the milliseconds, and return the values."""
         values, cells = [], []
         for ask in (theirs, ours):
             taken = []
@@ -28,11 +28,11 @@ class Table:
         return values
 
     def agree(self, what, yes):
-        """What both must agree on."""
+        """Print whether both agree."""
         print(f"  {'agree' if yes else 'DISAGREE'}: {what}")
         if not yes:
             self.failed.append(what)
 
     def end(self):
-        """Exits with 1 where they did not agree."""
+        """Exit with 1 if they did not agree."""
         sys.exit(1 if self.failed else 0)

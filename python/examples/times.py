@@ -1,4 +1,4 @@
-"""What a caller in Python waits for, milliseconds, the median of many frames: a sheet that folds into itself.
+"""Times of a caller in Python, the median of many frames in milliseconds: a sheet that folds into itself.
 
     python times.py [cells a side, default 214: 91,592 triangles]
 """
@@ -14,7 +14,7 @@ import nearmiss as nm
 
 
 def wait(call, times):
-    """The median wait for a call, after two to warm up."""
+    """The median time of a call, after two to warm up."""
     taken = []
     for _ in range(times + 2):
         begin = time.perf_counter()
@@ -37,25 +37,25 @@ def main():
         device = nm.Device(stream=stream)
     print(f"{len(faces):,} triangles on {device.name}; milliseconds of the caller")
     for query in [nm.Discrete(), nm.Continuous(), nm.Earliest(), nm.Near(0.25 / 214)]:
-        detector = nm.Detector(nm.Body(t1, faces), query, device)
-        still = isinstance(query, (nm.Discrete, nm.Near))
-        given = {0: t1 if still else (t0, t1)}
-        found = detector.frame(given)
-        row = [f"numpy {wait(lambda: detector.frame(given), times):.3f}"]
-        row.append(f"as before {wait(detector.detect, times):.3f}")
+        detector = nm.Detector(nm.Body(t1, faces), device=device)
+        rests = isinstance(query, (nm.Discrete, nm.Near))
+        given = {0: t1 if rests else (t0, t1)}
+        found = detector.step(given, query)
+        row = [f"numpy {wait(lambda: detector.step(given, query), times):.3f}"]
+        row.append(f"as before {wait(lambda: detector.query(query), times):.3f}")
         if on_gpu:
             ends = tuple(torch.from_numpy(end).cuda() for end in (t0, t1))
-            lent = {0: ends[1] if still else ends}
-            assert detector.frame(lent).hash == found.hash
-            row.append(f"tensors {wait(lambda: detector.frame(lent), times):.3f}")
-            detector.prepare(lent)
+            tensors = {0: ends[1] if rests else ends}
+            assert detector.step(tensors, query).hash == found.hash
+            row.append(f"tensors {wait(lambda: detector.step(tensors, query), times):.3f}")
+            detector.prepare(tensors, [query])
 
             def submitted():
                 detector.submit()
                 stream.synchronize()
 
             row.append(f"submitted and waited for {wait(submitted, times):.3f}")
-        print(f"{query!r}: {len(found):,} found; {', '.join(row)}")
+        print(f"{found!r}; {', '.join(row)}")
 
 
 main()

@@ -1,260 +1,79 @@
-//! Answers that stay on the device.
+//! Answers: a class for each class of queries. Columns are numpy arrays, made on first access.
 
-use crate::detector::Detector;
-use crate::dlpack::{CPU, CUDA, Dtype, FLOAT, INT, Place, Shape, UINT, capsule};
-use crate::errors::raised;
-use crate::host::rows;
-use nearmiss::Device;
-use nearmiss::contacts::{self, Entries};
-use numpy::PyArray2;
+use crate::asked::Stamp;
+use crate::columns::Columns;
+use crate::query::as_python;
+use crate::rows::{Contacts, FirstContact, NearPairs, NearestTriangles, TrianglePairs};
+use nearmiss::Rows;
+use nearmiss::query::QueryKind;
+use nearmiss::words::counted;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyDict, PyTuple};
 
-/// An array in the device's memory: torch.from_dlpack and cupy.from_dlpack take it without a copy, numpy.from_dlpack of a CPU with one.
+/// Base class of all answers.
 ///
-/// On a GPU what they make shows the detector's own memory: read it behind `submit`, on the device's stream, and no longer once the
-/// detector is asked anything else or is no longer prepared.
-#[pyclass(module = "nearmiss", frozen)]
-pub struct DeviceArray {
-    shape: Shape,
-    device: Device,
-    /// Whose memory it is, and how much that had been asked when it lay here.
-    detector: Py<Detector>,
-    asked: u64,
+/// Rows are in canonical order, the same on every machine. Columns are read-only numpy arrays: copy
+/// one before you write to it.
+#[pyclass(module = "nearmiss", frozen, subclass)]
+pub struct Answer {
+    pub contacts: nearmiss::Contacts,
+    /// When it was answered.
+    pub stamp: Stamp,
+    pub columns: Columns,
 }
 
-impl DeviceArray {
-    /// How many bytes there are from the first number to the last.
-    fn bytes(&self) -> usize {
-        let Shape { dtype, shape, strides, .. } = &self.shape;
-        let last: i64 = shape.iter().zip(strides).map(|(n, stride)| (n - 1) * stride).sum();
-        if shape.contains(&0) { 0 } else { (last as usize + 1) * usize::from(dtype.bits / 8) }
-    }
-
-    /// A copy in memory of Python's, of an array of the host: its memory may go while somebody holds it.
-    fn copied<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let (address, bytes) = (self.shape.address, self.bytes());
-        let copy = move || {
-            // Where nothing is, there need not be an address.
-            if bytes == 0 {
-                return Vec::new();
-            }
-            // SAFETY: the answer is there, and the lock is held under which alone it moves.
-            unsafe { std::slice::from_raw_parts(address as *const u8, bytes) }.to_vec()
-        };
-        let copy = self.detector.get().with_answer(py, self.asked, copy)?;
-        Ok(PyBytes::new(py, &copy))
-    }
+/// The answer as an object of the class of its query.
+pub fn typed<'py>(
+    py: Python<'py>,
+    contacts: nearmiss::Contacts,
+    stamp: Stamp,
+) -> PyResult<Bound<'py, PyAny>> {
+    let kind = contacts.query.kind();
+    let base = PyClassInitializer::from(Answer { contacts, stamp, columns: Columns::default() });
+    Ok(match kind {
+        QueryKind::Discrete => Bound::new(py, base.add_subclass(TrianglePairs))?.into_any(),
+        QueryKind::Continuous => Bound::new(py, base.add_subclass(Contacts))?.into_any(),
+        QueryKind::Earliest => Bound::new(py, base.add_subclass(FirstContact))?.into_any(),
+        QueryKind::Near => Bound::new(py, base.add_subclass(NearPairs))?.into_any(),
+        QueryKind::Distance => Bound::new(py, base.add_subclass(NearestTriangles))?.into_any(),
+        _ => Bound::new(py, base)?.into_any(),
+    })
 }
 
 #[pymethods]
-impl DeviceArray {
-    /// DLPack's door: without a copy on a GPU, where it waits if the taker works on another stream; a copy on a CPU.
-    #[pyo3(signature = (*, stream = None, max_version = None, dl_device = None, copy = None))]
-    fn __dlpack__<'py>(
-        &self,
-        py: Python<'py>,
-        stream: Option<i64>,
-        max_version: Option<Bound<'_, PyAny>>,
-        dl_device: Option<(i32, i32)>,
-        copy: Option<bool>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let _ = max_version;
-        let here = self.__dlpack_device__();
-        if copy == Some(true) || dl_device.is_some_and(|there| there != here) {
-            return Err(pyo3::exceptions::PyBufferError::new_err(
-                "a copy, or another device; take it without one and copy it",
-            ));
-        }
-        let Some(ours) = self.device.stream() else {
-            let copy = self.copied(py)?;
-            let shape = Shape { address: copy.as_bytes().as_ptr() as u64, ..self.shape.clone() };
-            return capsule(py, &shape, copy.into_any().unbind());
-        };
-        self.detector.get().with_answer(py, self.asked, || ())?;
-        // -1 asks for no order.
-        if stream != Some(ours.max(1) as i64) && stream != Some(-1) {
-            self.detector
-                .get()
-                .in_turn(py, || self.device.event()?.to(&self.device.event()?))
-                .map_err(raised)?;
-        }
-        capsule(py, &self.shape, self.detector.clone_ref(py).into_any())
-    }
-
-    fn __dlpack_device__(&self) -> (i32, i32) {
-        (self.shape.place.kind, self.shape.place.ordinal)
-    }
-
-    /// The second door, for what has no DLPack: version 3.
+impl Answer {
+    /// Query of this answer.
     #[getter]
-    fn __cuda_array_interface__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let Some(stream) = self.device.stream() else {
-            return Err(pyo3::exceptions::PyAttributeError::new_err(
-                "an array of the host: take it by DLPack",
-            ));
-        };
-        self.detector.get().with_answer(py, self.asked, || ())?;
-        let Dtype { code, bits, .. } = self.shape.dtype;
-        let size = i64::from(bits / 8);
-        let letter = match code {
-            FLOAT => 'f',
-            INT => 'i',
-            _ => 'u',
-        };
-        let told = PyDict::new(py);
-        told.set_item("version", 3)?;
-        // Whoever writes it spoils that answer and no other; torch refuses what is read-only.
-        told.set_item("data", (self.shape.address, false))?;
-        told.set_item("shape", PyTuple::new(py, &self.shape.shape)?)?;
-        told.set_item("strides", PyTuple::new(py, self.shape.strides.iter().map(|stride| stride * size))?)?;
-        told.set_item("typestr", format!("<{letter}{size}"))?;
-        told.set_item("stream", stream.max(1))?;
-        Ok(told)
+    fn query<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        as_python(py, self.contacts.query)
     }
 
-    /// Its dimensions.
+    /// Caveats, a sentence each: limits of this answer. Empty if there are none.
     #[getter]
-    fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
-        PyTuple::new(py, &self.shape.shape)
+    fn caveats(&self) -> Vec<String> {
+        self.contacts.caveats().iter().map(ToString::to_string).collect()
     }
 
-    fn __repr__(&self) -> String {
-        format!("<nearmiss.DeviceArray of shape {:?}>", self.shape.shape)
-    }
-}
-
-/// Where the answer of a submission lies on the device. Vertices, triangles and edges are numbered through all bodies: see `starts`.
-#[pyclass(module = "nearmiss", frozen)]
-pub struct DeviceAnswer {
-    pub answer: contacts::DeviceAnswer,
-    pub device: Device,
-    pub detector: Py<Detector>,
-    pub asked: u64,
-}
-
-/// One column of an entry: its name, where it begins, its numbers and how many of them.
-type Column = (&'static str, u64, Dtype, &'static [i64]);
-
-const INDEX: Dtype = Dtype { code: INT, bits: 32, lanes: 1 };
-const COUNT: Dtype = Dtype { code: INT, bits: 64, lanes: 1 };
-const STATE: Dtype = Dtype { code: UINT, bits: 32, lanes: 1 };
-const REAL: Dtype = Dtype { code: FLOAT, bits: 64, lanes: 1 };
-
-/// Bytes of an entry, and its columns: of `nearmiss::contacts::{Pair, Hit, NearHit, NearestHit}`.
-fn columns(entries: Entries) -> (u64, &'static [Column]) {
-    match entries {
-        Entries::TrianglePairs => (8, &[("indices", 0, INDEX, &[2])]),
-        Entries::Contacts => (
-            32,
-            &[
-                ("indices", 0, INDEX, &[2]),
-                ("toi", 8, REAL, &[]),
-                ("toi_upper", 16, REAL, &[]),
-                ("state", 24, STATE, &[]),
-            ],
-        ),
-        Entries::NearPairs => {
-            (32, &[("indices", 0, INDEX, &[2]), ("squared_distances", 8, REAL, &[]), ("at", 16, REAL, &[2])])
-        }
-        _ => (
-            96,
-            &[
-                ("indices", 0, INDEX, &[2]),
-                ("distances", 8, REAL, &[]),
-                ("at", 16, REAL, &[2, 2]),
-                ("points", 48, REAL, &[2, 3]),
-            ],
-        ),
-    }
-}
-
-impl DeviceAnswer {
-    fn array(
-        &self,
-        py: Python<'_>,
-        address: u64,
-        dtype: Dtype,
-        (shape, strides): (Vec<i64>, Vec<i64>),
-    ) -> DeviceArray {
-        let place = match self.device.ordinal() {
-            Some(ordinal) => Place { kind: CUDA, ordinal: ordinal as i32 },
-            None => Place { kind: CPU, ordinal: 0 },
-        };
-        let shape = Shape { address, place, dtype, shape, strides };
-        DeviceArray {
-            shape,
-            device: self.device.clone(),
-            detector: self.detector.clone_ref(py),
-            asked: self.asked,
-        }
-    }
-}
-
-#[pymethods]
-impl DeviceAnswer {
-    /// What the entries are: "triangle pairs", "contacts", "near pairs" or "nearest triangles".
+    /// Number of pairs that the narrow phase tested.
     #[getter]
-    fn entries(&self) -> &'static str {
-        match self.answer.entries {
-            Entries::TrianglePairs => "triangle pairs",
-            Entries::Contacts => "contacts",
-            Entries::NearPairs => "near pairs",
-            _ => "nearest triangles",
-        }
+    fn candidates(&self) -> u64 {
+        self.contacts.stats.candidates
     }
 
-    /// The lists, each a dictionary of columns with room for more rows than there are: `status` says how many are used. Triangle pairs:
-    /// indices (room, 2) int32. Contacts: indices, toi, toi_upper (room,) float64, state (room,) uint32 (1 contact, 2 undecided; 4 more
-    /// where the budget ended). Near pairs: indices, squared_distances, at (room, 2) float64. Nearest triangles: indices, distances,
-    /// at (room, 2, 2), points (room, 2, 3).
+    /// Hash of the answer, 16 hexadecimal digits. Equal answers have equal hashes on every machine.
     #[getter]
-    fn lists<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let (bytes, columns) = columns(self.answer.entries);
-        let list = |list: &contacts::DeviceList| {
-            let named = PyDict::new(py);
-            for &(name, begin, dtype, inner) in columns {
-                let size = u64::from(dtype.bits / 8);
-                let shape = [&[list.room as i64], inner].concat();
-                let strides = [&[(bytes / size) as i64], &crate::dlpack::packed(inner)[..]].concat();
-                named.set_item(name, self.array(py, list.address + begin, dtype, (shape, strides)))?;
+    fn hash(&self) -> String {
+        format!("{:016x}", self.contacts.hash())
+    }
+
+    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+        let told = match &slf.get().contacts.rows {
+            Rows::Earliest(Some(toi)) => format!("toi {toi}"),
+            Rows::Distance(Some(nearest)) => format!("distance {}", nearest.distance),
+            Rows::Earliest(None) | Rows::Distance(None) => "none".into(),
+            Rows::Pairs(_) | Rows::Contacts(_) | Rows::Near(_) => {
+                counted(slf.get().contacts.len() as u64, "row", "rows")
             }
-            Ok(named)
         };
-        self.answer.lists.iter().map(list).collect()
-    }
-
-    /// (5,) int64: entries of the first list; of the second, or, where one list has both kinds in
-    /// order, how many of the second kind follow; how many lists had too little room (unless 0 the
-    /// answer is not whole: `collect` gives it); 0, or which vertex cannot be computed with;
-    /// triangle pairs that share a point at the start of the step, -1 if that is not checked.
-    #[getter]
-    fn status(&self, py: Python<'_>) -> DeviceArray {
-        self.array(py, self.answer.status, COUNT, (vec![5], vec![1]))
-    }
-
-    /// (1,) float64: of an earliest query its time, NaN where nothing meets.
-    #[getter]
-    fn earliest(&self, py: Python<'_>) -> Option<DeviceArray> {
-        self.answer.earliest.map(|address| self.array(py, address, REAL, (vec![1], vec![1])))
-    }
-
-    /// (edges, 2) int32: the vertices of each edge; none of Discrete and Distance.
-    #[getter]
-    fn edges(&self, py: Python<'_>) -> DeviceArray {
-        let edges = self.answer.edges;
-        self.array(py, edges.address, INDEX, (vec![edges.room as i64, 2], vec![2, 1]))
-    }
-
-    /// (bodies + 1, 3) uint32: the first vertex, triangle and edge of each body, and how many there are.
-    #[getter]
-    fn starts<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<u32>> {
-        rows(py, &self.answer.starts)
-    }
-
-    /// Whether entries are in canonical order.
-    #[getter]
-    fn is_ordered(&self) -> bool {
-        self.answer.is_ordered
+        Ok(format!("<nearmiss.{}: {told}>", slf.get_type().name()?))
     }
 }

@@ -11,26 +11,35 @@ pub struct Stamp {
     moves: u64,
 }
 
-/// What a question does besides being answered.
-#[derive(Clone, Copy, PartialEq, Eq)]
+/// Effect of a call on what was answered before.
+#[derive(Clone, Copy, PartialEq)]
 pub enum Does {
-    /// The bodies may be elsewhere then, and so may be the answer on the device.
+    /// Bodies may be elsewhere then, and so may the answers on the device.
     Moves,
-    /// The answer on the device may be elsewhere then.
-    AsksAnew,
-    /// Bodies may be elsewhere; the answer stays where it is on the device.
+    /// Answers on the device may be elsewhere then.
+    Queries,
+    /// All stays as it is.
+    Reads,
+    /// Bodies may be elsewhere; answers stay where they are on the device.
     Submits,
+    /// The answer to one query comes to the host. If it came before, a recording may have moved bodies since.
+    Collects(nearmiss::Query),
 }
 
 /// What one thread at a time asks.
 pub struct Asked {
     pub detector: nearmiss::Detector,
+    is_gpu: bool,
     /// No other detector of the program has it.
     number: u64,
     /// Counts what may move the answer that lies on the device.
     pub asked: u64,
     /// Counts what may move bodies.
     pub moves: u64,
+    /// Queries that were collected since bodies last moved.
+    collected: Vec<nearmiss::Query>,
+    /// Keeps the arrays of updates that a GPU may still read, until a call waits.
+    pub placing: Vec<Held>,
     /// What holds the arrays that submissions read. Dropped behind the detector, which reads them no longer then.
     pub held: Vec<Held>,
 }
@@ -39,9 +48,18 @@ pub struct Asked {
 static MADE: AtomicU64 = AtomicU64::new(0);
 
 impl Asked {
-    pub fn new(detector: nearmiss::Detector) -> Asked {
+    pub fn new(detector: nearmiss::Detector, is_gpu: bool) -> Asked {
         let number = MADE.fetch_add(1, Ordering::Relaxed);
-        Asked { detector, number, asked: 0, moves: 0, held: Vec::new() }
+        Asked {
+            detector,
+            is_gpu,
+            number,
+            asked: 0,
+            moves: 0,
+            collected: Vec::new(),
+            placing: Vec::new(),
+            held: Vec::new(),
+        }
     }
 
     /// What nobody reads any longer.
@@ -49,10 +67,36 @@ impl Asked {
         if self.detector.is_prepared() { Vec::new() } else { std::mem::take(&mut self.held) }
     }
 
-    /// Counts a question.
+    /// A call has placed bodies from these arrays, and has waited for the device or not. Returns the arrays that nothing reads any longer.
+    ///
+    /// A call that failed may have launched work on a GPU. A CPU has read them.
+    pub fn read(&mut self, arrays: Vec<Held>, has_waited: bool) -> Vec<Held> {
+        let mut unread = self.unread();
+        if has_waited || !self.is_gpu {
+            unread.extend(arrays);
+            unread.append(&mut self.placing);
+            return unread;
+        }
+        self.placing.append(&mut unread);
+        self.placing.extend(arrays);
+        Vec::new()
+    }
+
+    /// Counts a call.
     pub fn count(&mut self, does: Does) {
-        self.asked += u64::from(matches!(does, Does::Moves | Does::AsksAnew));
-        self.moves += u64::from(matches!(does, Does::Moves | Does::Submits));
+        self.asked += u64::from(matches!(does, Does::Moves | Does::Queries));
+        let may_move = match does {
+            Does::Moves | Does::Submits => true,
+            Does::Queries | Does::Reads => false,
+            Does::Collects(query) => self.collected.contains(&query),
+        };
+        if may_move {
+            self.moves += 1;
+            self.collected.clear();
+        }
+        if let Does::Collects(query) = does {
+            self.collected.push(query);
+        }
     }
 
     /// Of what is answered now.
@@ -60,16 +104,16 @@ impl Asked {
         Stamp { detector: self.number, moves: self.moves }
     }
 
-    /// Refuses contacts of another detector, and of where bodies no longer are.
+    /// Refuses answers of another detector, and of places where bodies no longer are.
     pub fn check(&self, of: Stamp) -> Result<(), Error> {
         let what = match of {
             stamp if stamp == self.stamp() => return Ok(()),
             Stamp { detector, .. } if detector == self.number => {
-                "contacts that were found before the detector was asked to move, add, remove or replace bodies"
+                "the answer was found before bodies moved, came or went"
             }
-            _ => "contacts of another detector",
+            _ => "the answer is of another detector",
         };
-        let advice = "ask about contacts before the next `frame`, and the detector that found them";
+        let advice = "use an answer with the detector that found it, before the next update";
         Err(Error::InvalidArgument { what: what.into(), advice: advice.into() })
     }
 }

@@ -1,4 +1,4 @@
-//! Columns of an answer, which are made when they are first asked for.
+//! Columns of an answer, made on first access.
 
 use pyo3::prelude::*;
 use std::collections::HashMap;

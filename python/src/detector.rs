@@ -1,183 +1,48 @@
-//! A scene on a device, asked frame after frame.
+//! A scene on a device, which answers any number of queries.
 
-use crate::answer::DeviceAnswer;
+use crate::answer::Answer;
 use crate::asked::{Asked, Does};
-use crate::contacts::Contacts;
 use crate::device::Device;
 use crate::errors::{choice, raised};
-use crate::frame::{Frame, Named, known, numbered};
+use crate::frame::known;
 use crate::geometry::Geometry;
-use crate::query::Query;
+use crate::on_device::DeviceAnswer;
+use crate::pose::Ends;
+use crate::query::{Accuracy, Query, discrete, iterations_of, near};
 use crate::scene::{Body, Scene};
+use crate::turns::python;
 use crate::watch::watched;
+use nearmiss::Interrupt;
 use nearmiss::scene::BodyId;
 use nearmiss::words::counted;
-use nearmiss::{Error, Interrupt};
 use pyo3::prelude::*;
-use serde::Serialize;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::Mutex;
 
-/// A scene on a device, asked frame after frame.
+type Answered<'py> = PyResult<Bound<'py, PyAny>>;
+
+/// Scene on a device, which answers queries step after step.
 ///
-/// scene:  a Scene, or one Body.
-/// query:  Discrete, Continuous, Earliest, Near or Distance.
-/// device: default: Device(), a GPU where there is one.
+/// All queries share one memory and one upload of positions. Memory of a query is taken when it is
+/// first used; the same query with other numbers takes none and builds nothing. An answer depends on
+/// the query and on positions alone.
 ///
-/// Other threads of Python run while a frame is computed; arrays that were given must not be written meanwhile.
+/// - `scene`: a Scene, or one Body, whose number is then 0.
+/// - `device`: default Device(), a GPU if there is one.
+///
+/// Other threads of Python run during a call. Threads that share a device take turns.
 #[pyclass(module = "nearmiss", frozen)]
 pub struct Detector {
-    one: Mutex<Asked>,
-    query: nearmiss::Query,
-    device: Py<Device>,
-    /// What ends its calls.
-    interrupt: Interrupt,
-}
-
-impl Detector {
-    /// Asks the detector, in turn with all that share its device, while the interpreter runs on.
-    fn ask<T: Send>(
-        &self,
-        py: Python<'_>,
-        does: Does,
-        ask: impl FnOnce(&mut nearmiss::Detector) -> Result<T, Error> + Send,
-    ) -> PyResult<T> {
-        let (told, unread) = self.work(py, |one| {
-            one.count(does);
-            (ask(&mut one.detector), one.unread())
-        })?;
-        drop(unread);
-        told.map_err(raised)
-    }
-
-    /// Works with the detector, in turn with all that share its device, while the interpreter runs
-    /// on. A signal ends it.
-    fn work<T: Send>(&self, py: Python<'_>, work: impl FnOnce(&mut Asked) -> T + Send) -> PyResult<T> {
-        let turn = &self.device.get().turn;
-        let done = watched(py, &self.interrupt, |watch| {
-            let mut one = watch.lock(&self.one)?;
-            let _turn = watch.lock(turn)?;
-            watch.begins();
-            Ok(work(&mut one))
-        });
-        done?.map_err(raised)
-    }
-
-    /// Asks what is answered by contacts.
-    fn told(
-        &self,
-        py: Python<'_>,
-        does: Does,
-        ask: impl FnOnce(&mut nearmiss::Detector) -> Result<nearmiss::Contacts, Error> + Send,
-    ) -> PyResult<Contacts> {
-        let (told, stamp, unread) = self.work(py, |one| {
-            one.count(does);
-            (ask(&mut one.detector), one.stamp(), one.unread())
-        })?;
-        drop(unread);
-        Ok(Contacts::new(told.map_err(raised)?, stamp))
-    }
-
-    /// Looks at the detector.
-    fn look<T: Send>(
-        &self,
-        py: Python<'_>,
-        look: impl FnOnce(&nearmiss::Detector) -> T + Send,
-    ) -> PyResult<T> {
-        self.look_at(py, |one| look(&one.detector))
-    }
-
-    /// The same, with what is known of what was asked.
-    fn look_at<T: Send>(&self, py: Python<'_>, look: impl FnOnce(&Asked) -> T + Send) -> PyResult<T> {
-        // Mostly nobody has the lock. Who has it may wait for the interpreter.
-        if let Ok(one) = self.one.try_lock() {
-            return Ok(look(&one));
-        }
-        let done = watched(py, &self.interrupt, |watch| watch.lock(&self.one).map(|one| look(&one)));
-        done?.map_err(raised)
-    }
-
-    /// Does something with the device, in turn with all that share it.
-    pub fn in_turn<T: Send>(&self, py: Python<'_>, work: impl FnOnce() -> T + Send) -> T {
-        py.detach(|| {
-            let _turn = self.device.get().turn();
-            work()
-        })
-    }
-
-    /// Never while the interpreter is held: whoever has the lock may wait for that. Before the device's turn.
-    fn locked(&self) -> MutexGuard<'_, Asked> {
-        self.one.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn frame_of(&self, py: Python<'_>, inputs: Option<&Bound<'_, PyAny>>) -> PyResult<Frame> {
-        let inputs = inputs.map_or_else(|| Ok(Vec::new()), numbered)?;
-        let (numbers, places): (Vec<_>, Vec<_>) = inputs.into_iter().unzip();
-        let bodies = self.bodies(py, &numbers)?;
-        Frame::of(bodies.into_iter().zip(places).collect(), &self.device.get().device)
-    }
-
-    /// The bodies with these numbers.
-    fn bodies(&self, py: Python<'_>, numbers: &[usize]) -> PyResult<Vec<Named>> {
-        let found = self.look(py, |detector| {
-            let scene = detector.scene();
-            let named = |id| scene.get(id).map(|body| (id, body.name().to_owned(), body.vertex_count()));
-            numbers.iter().map(|&number| scene.id(number).and_then(named)).collect::<Vec<_>>()
-        })?;
-        let named =
-            |(&number, found)| known(number, found).map(|(id, name, vertices)| Named { id, name, vertices });
-        numbers.iter().zip(found).map(named).collect()
-    }
-
-    fn body(&self, py: Python<'_>, number: usize) -> PyResult<BodyId> {
-        known(number, self.look(py, |detector| detector.scene().id(number))?)
-    }
-
-    /// The named tolerance of a certified solver, or one of the defaults.
-    fn tolerance_of(
-        &self,
-        py: Python<'_>,
-        default: fn(&mut nearmiss::Detector) -> f64,
-    ) -> PyResult<Option<f64>> {
-        match self.query.certified().map(|certified| certified.tolerance) {
-            Some(None) => self.work(py, |one| default(&mut one.detector)).map(Some),
-            named => Ok(named.flatten()),
-        }
-    }
-
-    /// Does something with the answer that lay on the device when so many questions had been asked, if it still does.
-    pub fn with_answer<T: Send>(
-        &self,
-        py: Python<'_>,
-        asked: u64,
-        with: impl FnOnce() -> T + Send,
-    ) -> PyResult<T> {
-        let there = |one: &Asked| (one.detector.is_prepared() && one.asked == asked).then(with);
-        self.look_at(py, there)?.ok_or_else(|| {
-            choice(
-                "an answer on the device whose detector was asked anew, or has grown",
-                "ask `on_device` after `prepare`, and again when `is_prepared` is no longer true",
-            )
-        })
-    }
-}
-
-/// As Python's own values.
-pub fn python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
-    let text = serde_json::to_string(value)
-        .map_err(|error| raised(Error::Bug { what: format!("figures that are no JSON: {error}") }))?;
-    py.import("json")?.call_method1("loads", (text,))
+    pub one: Mutex<Asked>,
+    pub device: Py<Device>,
+    /// Ends its calls.
+    pub interrupt: Interrupt,
 }
 
 #[pymethods]
 impl Detector {
     #[new]
-    #[pyo3(signature = (scene, query, device = None))]
-    fn new(
-        py: Python<'_>,
-        scene: &Bound<'_, PyAny>,
-        query: &Query,
-        device: Option<Py<Device>>,
-    ) -> PyResult<Detector> {
+    #[pyo3(signature = (scene, *, device = None))]
+    fn new(py: Python<'_>, scene: &Bound<'_, PyAny>, device: Option<Py<Device>>) -> PyResult<Detector> {
         let device = match device {
             Some(device) => device,
             None => py.get_type::<Device>().call0()?.cast_into::<Device>()?.unbind(),
@@ -187,98 +52,195 @@ impl Detector {
             (_, Ok(scene)) => scene.borrow().scene.clone(),
             _ => {
                 return Err(choice(
-                    format!("a detector of {}", scene.get_type()),
-                    "give a Scene or a Body: Detector(Scene(*bodies), query)",
+                    format!("scene must be a Scene or a Body, got {}", scene.get_type().name()?),
+                    "use Detector(Scene(*bodies))",
                 ));
             }
         };
-        let (query, turn, interrupt) = (query.query, &device.get().turn, Interrupt::new());
+        let (turn, interrupt) = (&device.get().turn, Interrupt::new());
         let on = device.get().device.clone().with_interrupt(&interrupt);
         let detector = watched(py, &interrupt, |watch| {
             let _turn = watch.lock(turn)?;
             watch.begins();
-            let mut detector = nearmiss::Detector::new(on, bodies)?;
-            detector.begin(&query)?;
-            Ok(detector)
+            nearmiss::Detector::new(on, bodies)
         });
-        let one = Mutex::new(Asked::new(detector?.map_err(raised)?));
+        let one = Mutex::new(Asked::new(detector?.map_err(raised)?, device.get().device.is_gpu()));
         if let Ok(scene) = scene.cast::<Scene>() {
             scene.try_borrow_mut()?.taken = true;
         }
-        Ok(Detector { one, query, device, interrupt })
+        Ok(Detector { one, device, interrupt })
     }
 
-    /// Moves bodies, and answers.
+    /// Move bodies for the next queries.
     ///
-    /// inputs: a mapping from a body's number to where it is: of a deformable body (n, 3) numbers, or two such arrays for the
-    ///         ends of a step; of a rigid body a Pose, or two. A body that is not named rests
-    ///         where it is, or where its step ended. Discrete, Near and Distance test a step where
-    ///         it begins. Arrays of the detector's GPU, and on a CPU numpy's arrays of packed rows,
-    ///         are read where they lie.
-    #[pyo3(signature = (inputs = None))]
-    fn frame(&self, py: Python<'_>, inputs: Option<&Bound<'_, PyAny>>) -> PyResult<Contacts> {
-        let frame = self.frame_of(py, inputs)?;
+    /// - `inputs`: a mapping from body numbers to motions. Deformable bodies take positions, (n, 3)
+    ///   numbers, or a tuple of two such arrays for the start and the end of a step. Rigid bodies take
+    ///   a Pose, or a tuple of two.
+    ///
+    /// Other bodies rest where they are, or where their step ended. Discrete, Near and Distance use
+    /// the start of a step. Arrays of the detector's GPU are read in place, and so are packed numpy
+    /// arrays on a CPU. On a GPU, write to them only on the device's stream or after the next answer.
+    ///
+    /// Raises InputError for positions that cannot be used, InvalidArgumentError for bodies that do
+    /// not exist and motions that do not fit: then nothing has moved. Positions on a GPU are checked
+    /// by the next query.
+    fn update(&self, py: Python<'_>, inputs: &Bound<'_, PyAny>) -> PyResult<()> {
+        let mut frame = self.frame_of(py, inputs)?;
+        let held = std::mem::take(&mut frame.held);
         let given = frame.inputs();
-        self.told(py, Does::Moves, |detector| detector.step(&given, &self.query))
-    }
-
-    /// Answers for where the bodies are.
-    fn detect(&self, py: Python<'_>) -> PyResult<Contacts> {
-        self.told(py, Does::AsksAnew, |detector| detector.query(&self.query))
-    }
-
-    /// Where contacts or near pairs are, of Continuous and Near; else InvalidArgumentError. Of this
-    /// detector, and before it is asked to move, add, remove or replace bodies.
-    fn geometry(&self, py: Python<'_>, contacts: &Contacts) -> PyResult<Geometry> {
-        let told = self.work(py, |one| {
-            one.check(contacts.stamp)?;
-            one.detector.geometry(&contacts.contacts)
-        })?;
-        told.map(Geometry::from).map_err(raised)
-    }
-
-    /// All figures of an answer, as the command line prints them: counts, milliseconds by stage,
-    /// what it came to less than was asked, and `notes`: a sentence each.
-    /// Of the contacts that `geometry` takes.
-    fn summary<'py>(&self, py: Python<'py>, contacts: &Contacts) -> PyResult<Bound<'py, PyAny>> {
-        let told = self
-            .work(py, |one| one.check(contacts.stamp).map(|()| one.detector.summary(&contacts.contacts)))?;
-        python(py, &told.map_err(raised)?)
-    }
-
-    /// What a frame launches, holds and moves, by kernel and purpose: counted, as a dictionary.
-    fn plan<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        python(py, &self.ask(py, Does::AsksAnew, |detector| detector.plan(&self.query))?)
-    }
-
-    /// Prepares frames that nobody waits for: `submit` then takes no memory and moves nothing through the host.
-    ///
-    /// inputs: as for `frame`, of arrays that stay where they are: of the GPU, or on a CPU numpy's. Write into them between submissions; they
-    ///         are held until the next `prepare` or `frame`.
-    fn prepare(&self, py: Python<'_>, inputs: &Bound<'_, PyAny>) -> PyResult<Contacts> {
-        let frame = self.frame_of(py, Some(inputs))?;
-        let given = frame.on_device()?;
-        let held = frame.held;
-        let (told, stamp, unread) = self.work(py, |one| {
+        let (done, unread) = self.work(py, |one| {
             one.count(Does::Moves);
-            let told =
-                one.detector.prepare(&given, &[self.query]).and_then(|()| one.detector.collect(&self.query));
-            // A refusal may leave it as it was prepared before.
-            let as_before = told.is_err() && one.detector.is_prepared();
-            let unread = if as_before { held } else { std::mem::replace(&mut one.held, held) };
-            (told, one.stamp(), unread)
+            let done = one.detector.update(&given);
+            let unread = one.read(held, false);
+            (done, unread)
         })?;
         drop(unread);
-        Ok(Contacts::new(told.map_err(raised)?, stamp))
+        done.map_err(raised)
     }
 
-    /// Whether `submit` may be called, and a graph that recorded it be launched again.
+    /// Return the answer to a query, of the bodies where they are.
+    ///
+    /// Raises InvalidArgumentError for Continuous and Earliest if the last update gave no body two
+    /// ends, and OutOfMemory if the answer has no room. There is no partial answer.
+    fn query<'py>(&self, py: Python<'py>, query: &Query) -> Answered<'py> {
+        self.answer_to(py, query.query)
+    }
+
+    /// Move bodies and return the answer to a query, in one submission.
+    ///
+    /// As `update` and `query`. An error of the motions or of the query has moved nothing.
+    fn step<'py>(&self, py: Python<'py>, inputs: &Bound<'_, PyAny>, query: &Query) -> Answered<'py> {
+        let mut frame = self.frame_of(py, inputs)?;
+        let held = std::mem::take(&mut frame.held);
+        let given = frame.inputs();
+        let query = query.query;
+        self.answer(py, Does::Moves, held, |detector| detector.step(&given, &query))
+    }
+
+    /// Return features within a distance at t = 0: the answer to Near.
+    ///
+    /// - `distance`: a length above 0, in the unit of the vertices.
+    fn near<'py>(&self, py: Python<'py>, distance: f64) -> Answered<'py> {
+        self.answer_to(py, near(distance)?)
+    }
+
+    /// Return triangles that share a point at t = 0: the answer to Discrete.
+    ///
+    /// - `adjacent`: also test triangles with a common vertex, for points beyond that vertex or edge.
+    #[pyo3(signature = (*, adjacent = false))]
+    fn discrete<'py>(&self, py: Python<'py>, adjacent: bool) -> Answered<'py> {
+        self.answer_to(py, discrete(adjacent)?)
+    }
+
+    /// Return all contacts of the step: the answer to Continuous.
+    ///
+    /// - `tolerance`: accuracy of times, as a length of at least 0. Default: 1e-4 of the mean edge.
+    /// - `min_separation`: features that come this near count as contacts, a length of at least 0.
+    /// - `max_iterations`: most iterations for a pair, at least 1. Default 4096.
+    /// - `assume_free`: skip the count of triangle pairs that cross at the start of the step.
+    ///
+    /// Raises InvalidArgumentError if the last update gave no body two ends.
+    #[pyo3(signature = (*, tolerance = None, min_separation = 0.0, max_iterations = None, assume_free = false))]
+    fn continuous<'py>(
+        &self,
+        py: Python<'py>,
+        tolerance: Option<f64>,
+        min_separation: f64,
+        #[pyo3(from_py_with = iterations_of)] max_iterations: Option<u32>,
+        assume_free: bool,
+    ) -> Answered<'py> {
+        let accuracy = Accuracy { tolerance, min_separation, max_iterations, assume_free };
+        self.answer_to(py, accuracy.continuous()?)
+    }
+
+    /// Return the first contact of the step: the answer to Earliest.
+    ///
+    /// - `tolerance`: accuracy of the time, as a length of at least 0. Default: 1e-4 of the mean edge.
+    /// - `min_separation`: features that come this near count as contacts, a length of at least 0.
+    /// - `max_iterations`: most iterations for a pair, at least 1. Default 4096.
+    /// - `assume_free`: skip the count of triangle pairs that cross at the start of the step.
+    ///
+    /// Raises InvalidArgumentError if the last update gave no body two ends.
+    #[pyo3(signature = (*, tolerance = None, min_separation = 0.0, max_iterations = None, assume_free = false))]
+    fn earliest<'py>(
+        &self,
+        py: Python<'py>,
+        tolerance: Option<f64>,
+        min_separation: f64,
+        #[pyo3(from_py_with = iterations_of)] max_iterations: Option<u32>,
+        assume_free: bool,
+    ) -> Answered<'py> {
+        let accuracy = Accuracy { tolerance, min_separation, max_iterations, assume_free };
+        self.answer_to(py, accuracy.earliest()?)
+    }
+
+    /// Return the nearest two bodies at t = 0, and their distance: the answer to Distance.
+    fn distance<'py>(&self, py: Python<'py>) -> Answered<'py> {
+        self.answer_to(py, nearmiss::Query::distance())
+    }
+
+    /// Return vertices, weights, points and normals of an answer's rows.
+    ///
+    /// - `answer`: Contacts or NearPairs of this detector. Bodies must not have moved since.
+    ///
+    /// Raises InvalidArgumentError for other answers.
+    fn geometry(&self, py: Python<'_>, answer: &Answer) -> PyResult<Geometry> {
+        self.work_of(py, answer, |detector, found| detector.geometry(found)).map(Geometry::from)
+    }
+
+    /// Return all figures of an answer as a dictionary, as the program prints them with --json.
+    ///
+    /// Counts, caveats, notes, milliseconds by stage. Takes the answers that `geometry` takes, and
+    /// those of other queries too.
+    fn summary<'py>(&self, py: Python<'py>, answer: &Answer) -> Answered<'py> {
+        python(py, &self.work_of(py, answer, |detector, found| Ok(detector.summary(found)))?)
+    }
+
+    /// Return the kernels, memory and transfers of a query as a dictionary.
+    ///
+    /// They are counted: the query runs.
+    fn plan<'py>(&self, py: Python<'py>, query: &Query) -> Answered<'py> {
+        let query = query.query;
+        python(py, &self.run(py, Does::Queries, |detector| detector.plan(&query))?)
+    }
+
+    /// Prepare submissions: run the queries, load every kernel and take all memory.
+    ///
+    /// After it, `submit` allocates nothing and waits for nothing, until another call changes the
+    /// detector.
+    ///
+    /// - `inputs`: as of `update`, arrays that stay where they are: of the GPU, or packed numpy
+    ///   arrays on a CPU. Write new positions into them. They are held while prepared.
+    /// - `queries`: a list of queries, answered by every submission. No two may differ in numbers
+    ///   alone.
+    fn prepare(&self, py: Python<'_>, inputs: &Bound<'_, PyAny>, queries: &Bound<'_, PyAny>) -> PyResult<()> {
+        let queries = queries_of(queries)?;
+        let frame = self.frame_of(py, inputs)?;
+        let given = frame.on_device()?;
+        let held = frame.held;
+        let (done, unread) = self.work(py, |one| {
+            one.count(Does::Moves);
+            let done = one.detector.prepare(&given, &queries);
+            // A refusal may leave it as it was prepared before.
+            let as_before = done.is_err() && one.detector.is_prepared();
+            let unheld = if as_before { held } else { std::mem::replace(&mut one.held, held) };
+            let unread = one.read(unheld, done.is_ok());
+            (done, unread)
+        })?;
+        drop(unread);
+        done.map_err(raised)
+    }
+
+    /// Whether `submit` may be called, and a graph that recorded it launched again.
     #[getter]
     fn is_prepared(&self, py: Python<'_>) -> PyResult<bool> {
         self.look(py, nearmiss::Detector::is_prepared)
     }
 
-    /// Puts a frame into the device's stream and returns: may be captured in a graph (torch.cuda.graph, cupy).
+    /// Launch the prepared queries on the device's stream, and return at once.
+    ///
+    /// A graph may record it (torch.cuda.graph, cupy). On a CPU it is done when it returns. Raises
+    /// InvalidArgumentError if the detector is not prepared.
     fn submit(&self, py: Python<'_>) -> PyResult<()> {
         if self.device.get().device.is_gpu() {
             // Launches alone, and by the thread that may capture them.
@@ -289,75 +251,125 @@ impl Detector {
             });
             return done.0.map_err(raised);
         }
-        self.ask(py, Does::Submits, nearmiss::Detector::submit)
+        self.run(py, Does::Submits, nearmiss::Detector::submit)
     }
 
-    /// Where the answer of a submission will lie; None where it is not prepared.
-    fn on_device(detector: Bound<'_, Self>) -> PyResult<Option<DeviceAnswer>> {
+    /// Return the answer to a prepared query in device memory; None if it is not prepared.
+    ///
+    /// None also if no two bodies may meet.
+    fn on_device(detector: Bound<'_, Self>, query: &Query) -> PyResult<Option<DeviceAnswer>> {
         let own = detector.get();
         let (answer, asked) =
-            own.look_at(detector.py(), |one| (one.detector.on_device(&own.query), one.asked))?;
+            own.look_at(detector.py(), |one| (one.detector.on_device(&query.query), one.asked))?;
         let Some(answer) = answer else { return Ok(None) };
         let device = own.device.get().device.clone();
         Ok(Some(DeviceAnswer { answer, device, detector: detector.unbind(), asked }))
     }
 
-    /// Waits for what was submitted last, and brings the answer to the host. Where a list was too short the frame is asked again, and
-    /// the answer is whole; then the detector is no longer prepared.
-    fn collect(&self, py: Python<'_>) -> PyResult<Contacts> {
-        self.told(py, Does::Submits, |detector| detector.collect(&self.query))
+    /// Wait for the last submission, and return the answer to one of its queries.
+    ///
+    /// If a list was too short it grows and the query runs again: the answer is whole, and the
+    /// detector is no longer prepared. A query that was not prepared runs too.
+    fn collect<'py>(&self, py: Python<'py>, query: &Query) -> Answered<'py> {
+        let query = query.query;
+        self.answer(py, Does::Collects(query), Vec::new(), |detector| detector.collect(&query))
     }
 
-    /// Makes tiles or trees anew: pays when bodies have moved far from where they were made.
+    /// Rebuild tiles and trees: pays if bodies have moved far from where they were built.
+    ///
+    /// Queries do so by themselves. Submissions do not.
     fn rebuild(&self, py: Python<'_>) -> PyResult<()> {
-        self.ask(py, Does::AsksAnew, nearmiss::Detector::rebuild)
+        self.run(py, Does::Queries, nearmiss::Detector::rebuild)
     }
 
-    /// Ends the call that another thread makes or, if none runs, the next one: it raises
-    /// Interrupted, and the detector can be used again. Bodies that the call named are where it
-    /// said. On the main thread Ctrl-C does the same, and raises KeyboardInterrupt.
+    /// End the call of another thread or, if none runs, the next call.
+    ///
+    /// That call raises Interrupted, and the detector can be used again. Its motions were taken. On
+    /// the main thread Ctrl-C does the same, and raises KeyboardInterrupt.
     fn interrupt(&self) {
         self.interrupt.trigger();
     }
 
-    /// Adds a body: its number.
+    /// Add a body, and return its number.
     fn add(&self, py: Python<'_>, body: &Body) -> PyResult<usize> {
-        self.ask(py, Does::Moves, |detector| detector.add(body.body.clone())).map(BodyId::index)
+        self.run(py, Does::Moves, |detector| detector.add(body.body.clone())).map(BodyId::index)
     }
 
-    /// Takes the body of that number out.
+    /// Remove the body with that number. The next body that is added may take its number.
     fn remove(&self, py: Python<'_>, body: usize) -> PyResult<()> {
         let id = self.body(py, body)?;
-        self.ask(py, Does::Moves, |detector| detector.remove(id).map(drop))
+        self.run(py, Does::Moves, |detector| detector.remove(id).map(drop))
     }
 
-    /// Puts another body in the place of that number.
+    /// Replace the body with that number.
     fn replace(&self, py: Python<'_>, body: usize, by: &Body) -> PyResult<()> {
         let id = self.body(py, body)?;
-        self.ask(py, Does::Moves, |detector| detector.replace(id, by.body.clone()))
+        self.run(py, Does::Moves, |detector| detector.replace(id, by.body.clone()))
     }
 
-    /// Smallest tolerance of a pair of bodies by a certified solver, a length.
+    /// Return the place of a body at the start and the end of its step, copied to the host.
+    ///
+    /// Two (n, 3) arrays, or two Pose of a rigid body; both are equal if the body rests. Cost: a copy
+    /// of all vertices if only the device has them, and a wait.
+    fn download_positions<'py>(&self, py: Python<'py>, body: usize) -> Answered<'py> {
+        let id = self.body(py, body)?;
+        let found = self.run(py, Does::Reads, |detector| {
+            detector.download_positions()?;
+            Ok(detector.scene().get(id).map(Ends::of))
+        })?;
+        known(body, found)?.python(py)
+    }
+
+    /// Numbers of all bodies, ascending.
     #[getter]
-    fn tolerance(&self, py: Python<'_>) -> PyResult<Option<f64>> {
-        self.tolerance_of(py, nearmiss::Detector::tolerance)
+    fn bodies(&self, py: Python<'_>) -> PyResult<Vec<usize>> {
+        self.look(py, |detector| detector.scene().ids().map(BodyId::index).collect())
     }
 
-    /// Largest tolerance of a pair of bodies: that of `tolerance` if all pairs have the same.
+    /// Number of times that tiles or trees were built.
     #[getter]
-    fn largest_tolerance(&self, py: Python<'_>) -> PyResult<Option<f64>> {
-        self.tolerance_of(py, nearmiss::Detector::largest_tolerance)
+    fn builds(&self, py: Python<'_>) -> PyResult<u64> {
+        self.look(py, nearmiss::Detector::builds)
     }
 
-    /// Where it is asked.
+    /// Smallest default tolerance of a pair of bodies, a length.
+    #[getter]
+    fn tolerance(&self, py: Python<'_>) -> PyResult<f64> {
+        self.work(py, |one| one.detector.tolerance())
+    }
+
+    /// Largest default tolerance of a pair of bodies, a length.
+    #[getter]
+    fn largest_tolerance(&self, py: Python<'_>) -> PyResult<f64> {
+        self.work(py, |one| one.detector.largest_tolerance())
+    }
+
+    /// Device of this detector.
     #[getter]
     fn device(&self, py: Python<'_>) -> Py<Device> {
         self.device.clone_ref(py)
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let (query, bodies) = (self.query.kind(), self.look(py, |d| d.scene().ids().count())?);
+        let bodies = self.look(py, |detector| detector.scene().ids().count())?;
         let bodies = counted(bodies as u64, "body", "bodies");
-        Ok(format!("<nearmiss.Detector: {query}, {bodies}, {}>", self.device.get().device.name()))
+        Ok(format!("<nearmiss.Detector: {bodies}, {}>", self.device.get().device.name()))
     }
+}
+
+/// The queries of a list.
+fn queries_of(given: &Bound<'_, PyAny>) -> PyResult<Vec<nearmiss::Query>> {
+    let refused = || -> PyResult<PyErr> {
+        let what = format!("queries must be a list of queries, got {}", given.get_type().name()?);
+        Ok(choice(what, "use [query] for a single one"))
+    };
+    let Ok(list) = given.try_iter() else { return Err(refused()?) };
+    let mut queries = Vec::new();
+    for query in list {
+        match query?.cast::<Query>() {
+            Ok(query) => queries.push(query.get().query),
+            Err(_) => return Err(refused()?),
+        }
+    }
+    Ok(queries)
 }

@@ -1,4 +1,4 @@
-//! Where frames are computed.
+//! Machines that run queries.
 
 use crate::errors::{choice, named, optional, raised};
 use nearmiss::device::Backend;
@@ -10,28 +10,29 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// More threads than any machine has cores for are a mistake.
 const MOST_THREADS: i64 = 1024;
 
-/// A CPU, or an NVIDIA GPU.
+/// Machine that runs queries: the CPU, or an NVIDIA GPU.
 ///
-/// backend: "auto" (a GPU where there is one, else the CPU), "cpu" or "cuda".
-/// threads: of a CPU, 1 to 1024, of which no more are taken than there are processors; default: all.
-/// gpu:     a GPU by its number. It has a stream of its own.
-/// stream:  a stream of the caller, on the GPU that this thread is bound to: a torch or cupy stream, what has
-///          __cuda_stream__, or a handle (0: the default stream). All work goes there, behind what is there. The stream must
-///          outlive the device.
+/// - `backend`: "auto" (a GPU if there is one, else the CPU), "cpu" or "cuda".
+/// - `threads`: threads of the CPU, 1 to 1024, at most one a processor. Default: all.
+/// - `gpu`: number of a GPU. It gets a stream of its own.
+/// - `stream`: your stream, on the GPU that this thread is bound to: a stream of torch or cupy, an
+///   object with __cuda_stream__, or a handle (0: the default stream). All work goes there. It must
+///   outlive the device.
+/// - `memory_limit`: most bytes of device memory to take, at least 1. Default: all there are.
 ///
-/// Raises DeviceError where there is no such machine. Detectors of any threads may share a device: they take turns; for work side by
-/// side open two.
+/// Raises DeviceError if there is no such machine. Detectors of any threads may share a device: they
+/// take turns. For work side by side open two.
 #[pyclass(module = "nearmiss", frozen)]
 pub struct Device {
     pub device: nearmiss::Device,
-    /// Whoever asks it something.
+    /// Held by the thread that uses it.
     pub turn: Mutex<()>,
     /// The object that owns a borrowed stream.
     _stream: Option<Py<PyAny>>,
 }
 
 impl Device {
-    /// Waits until nobody else asks the device. Taken behind the lock of a detector, never before it, and never while the interpreter
+    /// Waits until no other thread uses the device. Taken behind the lock of a detector, never before it, and never while the interpreter
     /// is held.
     pub fn turn(&self) -> MutexGuard<'_, ()> {
         self.turn.lock().unwrap_or_else(PoisonError::into_inner)
@@ -41,24 +42,25 @@ impl Device {
 #[pymethods]
 impl Device {
     #[new]
-    #[pyo3(signature = (backend = "auto", *, threads = None, gpu = None, stream = None))]
+    #[pyo3(signature = (backend = "auto", *, threads = None, gpu = None, stream = None, memory_limit = None))]
     fn new(
         py: Python<'_>,
         backend: &str,
         #[pyo3(from_py_with = threads_of)] threads: Option<usize>,
         #[pyo3(from_py_with = gpu_of)] gpu: Option<u32>,
         stream: Option<Bound<'_, PyAny>>,
+        #[pyo3(from_py_with = bytes_of)] memory_limit: Option<u64>,
     ) -> PyResult<Device> {
-        let backend = named::<Backend>("a device", backend)?;
+        let backend = named::<Backend>("backend", backend)?;
         let on_gpu = gpu.is_some() || stream.is_some();
         if (on_gpu && (backend == Backend::Cpu || threads.is_some())) || (gpu.is_some() && stream.is_some()) {
             return Err(choice(
-                "a GPU or a stream together with what goes without",
+                "gpu, stream, threads and backend \"cpu\" exclude each other",
                 "give threads for a CPU, gpu or stream for a GPU; a stream is of the GPU that the thread is bound to",
             ));
         }
         if backend == Backend::Cuda && threads.is_some() {
-            return Err(choice("threads of a GPU, which takes none", "leave threads out, or choose \"cpu\""));
+            return Err(choice("backend \"cuda\" takes no threads", "leave threads out, or use \"cpu\""));
         }
         let handle = stream.as_ref().map(handle_of).transpose()?;
         let opened = py.detach(|| match (gpu, handle) {
@@ -70,37 +72,53 @@ impl Device {
             (None, None) => nearmiss::Device::open(backend, threads),
         });
         let device = opened.map_err(raised)?;
+        let device = match memory_limit {
+            Some(bytes) => device.with_memory_limit(bytes),
+            None => device,
+        };
         Ok(Device { device, turn: Mutex::new(()), _stream: stream.map(Bound::unbind) })
     }
 
-    /// What the machine calls itself.
+    /// Name of the machine.
     #[getter]
     fn name(&self) -> String {
         self.device.name()
     }
 
-    /// "cpu" or "cuda".
+    /// Kind of the machine: "cpu" or "cuda".
     #[getter]
     fn backend(&self) -> &'static str {
         self.device.backend()
     }
 
-    /// The GPU's number; None of a CPU.
+    /// Number of the GPU; None for a CPU.
     #[getter]
     fn gpu(&self) -> Option<u32> {
         self.device.ordinal()
     }
 
-    /// The handle of the stream that all work goes to, 0 for the default one; None of a CPU.
+    /// Handle of the stream that all work goes to, 0 for the default one; None for a CPU.
     #[getter]
     fn stream(&self) -> Option<u64> {
         self.device.stream()
     }
 
-    /// Bytes of the device's memory that are held now, and the most that were.
+    /// Bytes of device memory held now, and the most held at once.
     #[getter]
     fn bytes(&self) -> (u64, u64) {
         self.device.bytes()
+    }
+
+    /// Number of times that device memory was taken.
+    #[getter]
+    fn allocations(&self) -> u64 {
+        self.device.allocations()
+    }
+
+    /// Bytes copied from the host to the device.
+    #[getter]
+    fn uploaded(&self) -> u64 {
+        self.device.uploaded()
     }
 
     fn __repr__(&self) -> String {
@@ -110,6 +128,10 @@ impl Device {
 
 fn threads_of(given: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
     Ok(optional(given, "threads", [1, MOST_THREADS])?.map(|threads| threads as usize))
+}
+
+fn bytes_of(given: &Bound<'_, PyAny>) -> PyResult<Option<u64>> {
+    Ok(optional(given, "memory_limit", [1, i64::MAX])?.map(|bytes| bytes as u64))
 }
 
 fn gpu_of(given: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
@@ -130,7 +152,7 @@ fn handle_of(stream: &Bound<'_, PyAny>) -> PyResult<u64> {
         }
     }
     Err(choice(
-        format!("a stream of type {}", stream.get_type().name()?),
-        "give its handle as a number, or an object of torch or cupy, or one with __cuda_stream__",
+        format!("stream must be a stream of CUDA, got {}", stream.get_type().name()?),
+        "give its handle as a number, a stream of torch or cupy, or an object with __cuda_stream__",
     ))
 }

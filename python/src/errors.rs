@@ -22,7 +22,7 @@ use classes::{
     Bug, DeviceError, InputError, Interrupted, InvalidArgumentError, MeshWarning, NearmissError, OutOfMemory,
 };
 
-/// What Python raises.
+/// The exception of an error.
 pub fn raised(error: Error) -> PyErr {
     let text = error.to_string();
     match error {
@@ -42,15 +42,16 @@ pub fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
     PyErr::warn(py, &py.get_type::<MeshWarning>(), &text, 1)
 }
 
-/// What was asked does not exist or does not fit.
+/// An argument that does not exist or does not fit.
 pub fn choice(what: impl Into<String>, advice: impl Into<String>) -> PyErr {
     raised(Error::InvalidArgument { what: what.into(), advice: advice.into() })
 }
 
-/// The choice of that name.
-pub fn named<T: Named>(what: &str, name: &str) -> PyResult<T> {
-    T::of(name)
-        .ok_or_else(|| choice(format!("{what} called {name}"), one_of(T::ALL.iter().map(|of| of.name()))))
+/// The choice of that name; `argument` is the argument's.
+pub fn named<T: Named>(argument: &str, name: &str) -> PyResult<T> {
+    T::of(name).ok_or_else(|| {
+        choice(format!("{argument} has no choice {name:?}"), one_of(T::ALL.iter().map(|of| of.name())))
+    })
 }
 
 /// An integer from `least` to `most`; `name` is the argument's.
@@ -58,8 +59,8 @@ pub fn integer(given: &Bound<'_, PyAny>, name: &str, [least, most]: [i64; 2]) ->
     match given.extract::<i64>() {
         Ok(number) if (least..=most).contains(&number) => Ok(number),
         _ => Err(choice(
-            format!("{name} = {}", given.repr()?),
-            format!("give an integer from {least} to {most}"),
+            format!("{name} must be an integer from {least} to {most}, got {}", given.repr()?),
+            "give such a number",
         )),
     }
 }
@@ -69,7 +70,7 @@ pub fn optional(given: &Bound<'_, PyAny>, name: &str, range: [i64; 2]) -> PyResu
     if given.is_none() { Ok(None) } else { integer(given, name, range).map(Some) }
 }
 
-/// Which names there are.
+/// All names that there are.
 pub fn one_of<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let quoted: Vec<String> = names.into_iter().map(|name| format!("\"{name}\"")).collect();
     format!("choose one of {}", quoted.join(", "))

@@ -1,4 +1,4 @@
-//! What a frame tells of its bodies.
+//! Motions of bodies, as Python gives them.
 
 use crate::errors::choice;
 use crate::host::{Most, positions};
@@ -10,11 +10,11 @@ use nearmiss::scene::{BodyId, DeviceMotion, Motion};
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyMapping, PyTuple};
 
-/// Where bodies are, as Python told it.
+/// Motions of bodies, as Python gives them.
 #[derive(Default)]
 pub struct Frame {
     bodies: Vec<(BodyId, Given)>,
-    /// What holds arrays that are read where they lie.
+    /// Keeps the arrays that are read in place.
     pub held: Vec<Held>,
 }
 
@@ -73,8 +73,8 @@ impl Frame {
         let lent = |(id, given): &(BodyId, Given)| match given {
             Given::Known(Motion::OnDevice(input)) => Ok((*id, *input)),
             Given::At(_) | Given::Step(_) | Given::Known(_) => Err(choice(
-                format!("body {id} of a submission, whose input would be copied"),
-                "give arrays that stay: of the GPU, or, on a CPU, of numpy in single or double precision with packed rows",
+                format!("the array of body {id} cannot be read in place by a submission"),
+                "give arrays that stay: of the GPU or, on a CPU, of numpy in float32 or float64 with packed rows",
             )),
         };
         self.bodies.iter().map(lent).collect()
@@ -86,7 +86,7 @@ impl Frame {
             && list.iter().any(|end| end.is_instance_of::<Pose>())
         {
             return Err(choice(
-                format!("{what}: a list of poses"),
+                format!("{what} are a list of poses"),
                 "give both ends of a step as a tuple of two",
             ));
         }
@@ -150,18 +150,18 @@ fn end(object: &Bound<'_, PyAny>, Of { device, what, most }: Of<'_>) -> PyResult
 }
 
 fn halves(what: &str) -> PyErr {
-    choice(format!("{what}: one end on the GPU, one on the host"), "give both ends in one memory")
+    choice(format!("{what} have one end on the GPU and one on the host"), "give both ends in one memory")
 }
 
-/// What a mapping says of which body, by its number.
+/// The items of a mapping from body numbers.
 pub fn numbered<'py>(inputs: &Bound<'py, PyAny>) -> PyResult<Vec<(usize, Bound<'py, PyAny>)>> {
     let mapping = inputs.cast::<PyMapping>().map_err(|_| no_mapping(inputs))?;
     let mut all = Vec::new();
     for item in mapping.items()? {
         let (body, input) = item.extract::<(Bound<'_, PyAny>, Bound<'_, PyAny>)>()?;
         let number = body.extract().or_else(|_| {
-            let what = format!("an input for body {}, which is no number of one", body.repr()?);
-            Err(choice(what, "give a number that `add` returned"))
+            let what = format!("keys of inputs must be body numbers, got {}", body.repr()?);
+            Err(choice(what, "use a number that add returned"))
         })?;
         all.push((number, input));
     }
@@ -170,14 +170,12 @@ pub fn numbered<'py>(inputs: &Bound<'py, PyAny>) -> PyResult<Vec<(usize, Bound<'
 
 fn no_mapping(inputs: &Bound<'_, PyAny>) -> PyErr {
     choice(
-        format!("inputs of type {}", inputs.get_type()),
-        "give a dictionary from the number of a body to where it is, as {0: vertices}",
+        format!("inputs must be a mapping from body numbers, got {}", inputs.get_type()),
+        "use a dictionary as {0: vertices}",
     )
 }
 
 /// The body that was found by its number.
 pub fn known<T>(index: usize, found: Option<T>) -> PyResult<T> {
-    found.ok_or_else(|| {
-        choice(format!("body {index}, which is not in the scene"), "give a number that `add` returned")
-    })
+    found.ok_or_else(|| choice(format!("body {index} is not in the scene"), "use a number that add returned"))
 }

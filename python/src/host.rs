@@ -12,12 +12,14 @@ use numpy::{
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
-/// Reads a PLY or OBJ file: (vertices, faces), (n, 3) float32 or float64 as the file has them, and (m, 3) uint32.
+/// Read a PLY or OBJ file, also with .gz appended.
 ///
-/// Polygons are cut into triangles. Parts of the file that are skipped, left out (faces of one or
-/// two corners) or cut as a fan (faces that cross themselves) are counted by a MeshWarning each.
+/// - `path`: the file.
+/// - `strict`: raise InputError for each part of the file that would be skipped or cut otherwise.
 ///
-/// strict:  raise InputError for such a part.
+/// Returns (vertices, faces): (n, 3) float32 or float64 as in the file, and (m, 3) uint32. Polygons
+/// are cut into triangles. A MeshWarning counts parts that are skipped, left out (faces of one or two
+/// corners) or cut as a fan (faces that cross themselves).
 ///
 /// Raises InputError for a file that is no mesh, with the line or element.
 #[pyfunction]

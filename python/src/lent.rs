@@ -1,4 +1,4 @@
-//! Arrays that a detector reads where they lie.
+//! Arrays that a detector reads in place.
 
 use crate::dlpack::{CPU, CUDA, CUDA_MANAGED, Dtype, FLOAT, Place, Shape, Taken, packed};
 use crate::errors::{choice, raised};
@@ -24,7 +24,7 @@ pub struct LentRows {
     pub held: Held,
 }
 
-/// Whether an array lies in the memory of an NVIDIA GPU.
+/// Return whether an array is in the memory of an NVIDIA GPU.
 #[pyfunction]
 pub fn is_on_gpu(object: &Bound<'_, PyAny>) -> bool {
     if object.cast::<PyUntypedArray>().is_ok() {
@@ -44,7 +44,7 @@ pub fn on_gpu(object: &Bound<'_, PyAny>, device: &Device, (width, what): (i64, &
     let told = if by_dlpack { None } else { Some(by_cuda_array_interface(object, what)?) };
     let Some((ordinal, stream)) = device.ordinal().zip(device.stream()) else {
         return Err(choice(
-            format!("{what} on a GPU for a detector on the CPU"),
+            format!("{what} are on a GPU, and the detector is on the CPU"),
             "give the detector a device of that GPU, or arrays of the host",
         ));
     };
@@ -52,7 +52,7 @@ pub fn on_gpu(object: &Bound<'_, PyAny>, device: &Device, (width, what): (i64, &
         // Where it says which stream makes the data that must be ours: nothing here waits for another.
         Some((_, Some(theirs))) if theirs != stream.max(1) => {
             return Err(choice(
-                format!("{what} of stream {theirs} for a detector on stream {stream}"),
+                format!("{what} are of stream {theirs}, and the detector is on stream {stream}"),
                 "open the device on that stream: Device(stream=…)",
             ));
         }
@@ -69,7 +69,7 @@ pub fn on_gpu(object: &Bound<'_, PyAny>, device: &Device, (width, what): (i64, &
     };
     if shape.place.ordinal != ordinal as i32 {
         return Err(choice(
-            format!("{what} on GPU {} for a detector on GPU {ordinal}", shape.place.ordinal),
+            format!("{what} are on GPU {}, and the detector is on GPU {ordinal}", shape.place.ordinal),
             "put both on one",
         ));
     }

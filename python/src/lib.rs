@@ -1,13 +1,12 @@
-//! The Python module `nearmiss._native`; `lib/nearmiss/__init__.py` makes its names those of `nearmiss`, `lib/nearmiss/_native.pyi` tells
-//! their types.
+//! The Python module `nearmiss._native`. `lib/nearmiss/__init__.py` makes its names those of `nearmiss`; `lib/nearmiss/_native.pyi`
+//! has their types and docstrings.
 //!
-//! A class is a file, and wraps the library's type of that name. Arrays of the host are numpy's; arrays of a GPU come and go
-//! by DLPack or `__cuda_array_interface__`, and nothing here links to what made them. The interpreter runs on while a frame is computed.
+//! A class is a file, and wraps the library's type of that name. Arrays of the host are numpy's. Arrays of a GPU come and go by DLPack
+//! or `__cuda_array_interface__`; nothing here links to the libraries that made them. The interpreter runs on during a call.
 
 mod answer;
 mod asked;
 mod columns;
-mod contacts;
 mod detector;
 mod device;
 mod dlpack;
@@ -16,9 +15,13 @@ mod frame;
 mod geometry;
 mod host;
 mod lent;
+mod on_device;
 mod pose;
 mod query;
+mod research;
+mod rows;
 mod scene;
+mod turns;
 mod watch;
 
 /// The compiled half of `nearmiss`.
@@ -27,9 +30,7 @@ mod _native {
     use pyo3::prelude::*;
 
     #[pymodule_export]
-    use super::answer::{DeviceAnswer, DeviceArray};
-    #[pymodule_export]
-    use super::contacts::Contacts;
+    use super::answer::Answer;
     #[pymodule_export]
     use super::detector::Detector;
     #[pymodule_export]
@@ -41,9 +42,15 @@ mod _native {
     #[pymodule_export]
     use super::lent::is_on_gpu;
     #[pymodule_export]
+    use super::on_device::{DeviceAnswer, DeviceArray};
+    #[pymodule_export]
     use super::pose::Pose;
     #[pymodule_export]
     use super::query::{Continuous, Discrete, Distance, Earliest, Near, Query};
+    #[pymodule_export]
+    use super::research::configure;
+    #[pymodule_export]
+    use super::rows::{Contacts, FirstContact, NearPairs, NearestTriangles, TrianglePairs};
     #[pymodule_export]
     use super::scene::{Body, Scene};
 

@@ -1,23 +1,24 @@
-//! Where a rigid body is.
+//! Poses of rigid bodies.
 
 use crate::errors::{choice, raised};
-use crate::host::row;
+use crate::host::{points, row};
 use crate::lent::{Held, is_on_gpu, on_gpu};
 use crate::query::{Remade, remade};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::scene::{self, DevicePose, Motion};
+use nearmiss::scene::{self, BodyKind, DevicePose, Motion};
 use nearmiss::{Device, Error};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-/// Where a rigid body is: turned first, then moved.
+/// Pose of a rigid body: rotation, then translation.
 ///
-/// rotation:    a unit quaternion x, y, z, w; default: none. It may be off unit length by up to
-/// 1.2e-4 (2^-13) and is normalised. translation: x, y, z, in the unit of the vertices; default:
-/// none.
+/// - `rotation`: unit quaternion (x, y, z, w), default (0, 0, 0, 1). Its length may differ from 1 by
+///   1.2e-4 (2^-13); it is normalised.
+/// - `translation`: (x, y, z) in the unit of the vertices, default (0, 0, 0).
 ///
-/// A vertex is placed at R v + t in doubles, also of a mesh in float32.
-/// Both may lie on a GPU, 4 and 3 float32 or float64 numbers. Raises InvalidArgumentError for what is no pose; on a GPU the frame does.
+/// A vertex v is placed at R v + t in float64, also of a mesh in float32. Both may be arrays of a
+/// GPU, of 4 and 3 float32 or float64 numbers. Raises InputError for numbers that are no pose, and
+/// InvalidArgumentError for other shapes; poses on a GPU are checked by the next query.
 #[pyclass(module = "nearmiss", frozen)]
 pub struct Pose {
     rotation: Py<PyAny>,
@@ -42,7 +43,7 @@ impl Pose {
         let on_gpu = [&rotation, &translation].map(|given| given.as_ref().is_some_and(is_on_gpu));
         if on_gpu[0] != on_gpu[1] {
             return Err(choice(
-                "a pose half of which is on a GPU",
+                "rotation and translation are in different memories",
                 "give both on the GPU, or both on the host",
             ));
         }
@@ -67,13 +68,13 @@ impl Pose {
         })
     }
 
-    /// As it was given.
+    /// Rotation, as it was given.
     #[getter]
     fn rotation(&self, py: Python<'_>) -> Py<PyAny> {
         self.rotation.clone_ref(py)
     }
 
-    /// As it was given.
+    /// Translation, as it was given.
     #[getter]
     fn translation(&self, py: Python<'_>) -> Py<PyAny> {
         self.translation.clone_ref(py)
@@ -128,6 +129,12 @@ pub enum GivenPose {
 }
 
 impl Pose {
+    fn known(py: Python<'_>, pose: scene::Pose) -> PyResult<Pose> {
+        let tuple = |numbers: &[f64]| PyTuple::new(py, numbers).map(|tuple| tuple.into_any().unbind());
+        let (rotation, translation) = (tuple(&pose.rotation)?, tuple(&pose.translation)?);
+        Ok(Pose { rotation, translation, known: Some(pose) })
+    }
+
     pub fn given(&self, py: Python<'_>, device: &Device) -> PyResult<GivenPose> {
         if let Some(pose) = self.known {
             return Ok(GivenPose::Known(pose));
@@ -146,5 +153,30 @@ impl Pose {
         let rotation = one_row(&self.rotation, 4, "a rotation")?;
         let pose = DevicePose { translation: translation.rows, rotation: rotation.rows };
         Ok(GivenPose::Lent(pose, [translation.held, rotation.held]))
+    }
+}
+
+/// A body at the start and at the end of its step.
+pub enum Ends {
+    Positions([Positions; 2]),
+    Poses([scene::Pose; 2]),
+}
+
+impl Ends {
+    pub fn of(body: &Body) -> Ends {
+        if body.kind() == BodyKind::Rigid {
+            return Ends::Poses(body.poses());
+        }
+        Ends::Positions(body.ends().map(Clone::clone))
+    }
+
+    /// A tuple of two arrays, or of two poses.
+    pub fn python(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+        let both: [PyResult<Bound<'_, PyAny>>; 2] = match self {
+            Ends::Positions(ends) => ends.map(|end| Ok(points(py, &end))),
+            Ends::Poses(ends) => ends.map(|end| Ok(Bound::new(py, Pose::known(py, end)?)?.into_any())),
+        };
+        let [start, end] = both;
+        Ok(PyTuple::new(py, [start?, end?])?.into_any())
     }
 }

@@ -1,13 +1,15 @@
-//! What is asked. How candidates are found never changes an answer.
+//! Queries, as Python's classes.
 
-use crate::errors::{choice, named, one_of, optional, raised};
-use nearmiss::query::{
-    self, Broad, Bv, Certified, ContinuousSolver, Named, Order, Rebuild, Search, Solver, TriangleTest,
-};
+use crate::errors::{choice, optional, raised};
+use crate::research;
+use nearmiss::query::{self, Certified, TriangleTest};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple, PyType};
 
-/// A question, with all its choices: one of Discrete, Continuous, Earliest, Near and Distance.
+/// Base class of all queries: Discrete, Continuous, Earliest, Near, Distance.
+///
+/// A query is a value: it can be compared, hashed, copied and pickled. Each class of queries has an
+/// answer class of its own. Queries with other numbers use the same memory of a detector.
 #[pyclass(module = "nearmiss", frozen, subclass)]
 pub struct Query {
     pub query: nearmiss::Query,
@@ -24,65 +26,77 @@ impl Query {
     }
 
     fn __repr__(query: &Bound<'_, Self>) -> PyResult<String> {
-        let choices = query.get().choices(query.py())?;
-        let told = choices.iter().map(|(name, value)| Ok(format!("{name}={}", value.repr()?)));
-        Ok(format!("{}({})", query.get_type().name()?, told.collect::<PyResult<Vec<_>>>()?.join(", ")))
+        let (py, own) = (query.py(), query.get());
+        let product = format!("{}({})", query.get_type().name()?, listed(&own.numbers(py)?)?);
+        let choices = research::choices(py, &own.query)?;
+        if choices.is_empty() {
+            return Ok(product);
+        }
+        Ok(format!("configure({product}, {})", listed(&choices)?))
     }
 
-    /// For copy and pickle: its class, and its choices.
+    /// The class itself: `Query[NearPairs]` is for type checkers alone.
+    #[classmethod]
+    fn __class_getitem__<'py>(class: &Bound<'py, PyType>, answer: &Bound<'py, PyAny>) -> Bound<'py, PyType> {
+        let _ = answer;
+        class.clone()
+    }
+
+    /// For copy and pickle: the class with its numbers, and choices of the laboratory behind them.
     fn __reduce__<'py>(query: &Bound<'py, Self>) -> PyResult<Remade<'py>> {
-        remade(query.get_type(), PyTuple::empty(query.py()), query.get().choices(query.py())?)
+        let (py, own) = (query.py(), query.get());
+        let choices = research::choices(py, &own.query)?;
+        if choices.is_empty() {
+            return remade(query.get_type(), PyTuple::empty(py), own.numbers(py)?);
+        }
+        let configure = py.import("nearmiss.research")?.getattr("configure")?;
+        let make = py.import("functools")?.getattr("partial")?.call((configure,), Some(&choices))?;
+        Ok((make, PyTuple::new(py, [as_python(py, research::without(own.query))?])?))
     }
 }
 
+/// `name=value` of each, with commas between.
+fn listed(named: &Bound<'_, PyDict>) -> PyResult<String> {
+    let told = named.iter().map(|(name, value)| Ok(format!("{name}={}", value.repr()?)));
+    Ok(told.collect::<PyResult<Vec<_>>>()?.join(", "))
+}
+
 impl Query {
-    /// What differs from the defaults, by the names of the arguments.
-    fn choices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let choices = PyDict::new(py);
-        let (mut usual, mut certified) = ("exact", None);
+    /// Numbers and filters that differ from the defaults, by the names of the arguments.
+    fn numbers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let numbers = PyDict::new(py);
         match &self.query {
             nearmiss::Query::Discrete(discrete)
                 if discrete.test == TriangleTest::Exact { adjacent: true } =>
             {
-                choices.set_item("adjacent", true)?;
+                numbers.set_item("adjacent", true)?;
             }
-            nearmiss::Query::Near(near) => {
-                choices.set_item("distance", near.distance)?;
-                usual = self.query.solver().name();
-            }
-            nearmiss::Query::Distance(_) => usual = self.query.solver().name(),
-            nearmiss::Query::Continuous(moving) => {
-                (usual, certified) = ("certified", moving.solver.certified())
-            }
-            nearmiss::Query::Earliest(moving) => {
-                (usual, certified) = ("certified", moving.solver.certified())
-            }
+            nearmiss::Query::Near(near) => numbers.set_item("distance", near.distance)?,
             _ => {}
         }
+        if let Some(certified) = self.query.certified() {
+            let min_separation = Some(certified.min_separation).filter(|&length| length != 0.0);
+            set(&numbers, "tolerance", certified.tolerance)?;
+            set(&numbers, "min_separation", min_separation)?;
+            set(&numbers, "max_iterations", certified.max_iterations)?;
+        }
         if !self.query.kind().is_at_rest() && !self.query.checks_start() {
-            choices.set_item("assume_free", true)?;
+            numbers.set_item("assume_free", true)?;
         }
-        if let Some(certified) = certified {
-            set(&choices, "tolerance", certified.tolerance)?;
-            set(&choices, "separation", Some(certified.min_separation).filter(|&length| length != 0.0))?;
-            set(&choices, "budget", certified.max_iterations)?;
-        }
-        set(&choices, "solver", Some(self.query.solver().name()).filter(|&name| name != usual))?;
-        let search = self.query.search();
-        set(&choices, "broad", search.broad.map(|broad| broad.name()))?;
-        set(&choices, "order", search.order.map(|order| order.name()))?;
-        set(&choices, "bv", search.bv.map(|bv| bv.name()))?;
-        set(&choices, "rebuild", search.rebuild.map(|rebuild| rebuild.name()))?;
-        Ok(choices)
+        Ok(numbers)
     }
 }
 
-fn set<'py>(choices: &Bound<'py, PyDict>, name: &str, value: Option<impl IntoPyObject<'py>>) -> PyResult<()> {
-    value.map_or(Ok(()), |value| choices.set_item(name, value))
+pub fn set<'py>(
+    named: &Bound<'py, PyDict>,
+    name: &str,
+    value: Option<impl IntoPyObject<'py>>,
+) -> PyResult<()> {
+    value.map_or(Ok(()), |value| named.set_item(name, value))
 }
 
-/// What Python's pickle makes something of again: a function, and what it is given.
-pub type Remade<'py> = (Bound<'py, PyAny>, (Bound<'py, PyType>, Bound<'py, PyTuple>, Bound<'py, PyDict>));
+/// What Python's pickle makes an object of again: a function and its arguments.
+pub type Remade<'py> = (Bound<'py, PyAny>, Bound<'py, PyTuple>);
 
 /// An object of that class, made of these arguments and named ones.
 pub fn remade<'py>(
@@ -90,184 +104,160 @@ pub fn remade<'py>(
     positional: Bound<'py, PyTuple>,
     named: Bound<'py, PyDict>,
 ) -> PyResult<Remade<'py>> {
-    let make = class.py().import("copyreg")?.getattr("__newobj_ex__")?;
-    Ok((make, (class, positional, named)))
+    let py = class.py();
+    let make = py.import("copyreg")?.getattr("__newobj_ex__")?;
+    Ok((make, (class, positional, named).into_pyobject(py)?))
 }
 
-/// The choices of how candidates are found, by their names.
-type Names<'a> = [Option<&'a str>; 4];
+/// The query as an object of its class.
+pub fn as_python(py: Python<'_>, query: nearmiss::Query) -> PyResult<Bound<'_, PyAny>> {
+    use nearmiss::Query as Q;
+    let base = PyClassInitializer::from(Query { query });
+    Ok(match query {
+        Q::Discrete(_) => Bound::new(py, base.add_subclass(Discrete))?.into_any(),
+        Q::Continuous(_) => Bound::new(py, base.add_subclass(Continuous))?.into_any(),
+        Q::Earliest(_) => Bound::new(py, base.add_subclass(Earliest))?.into_any(),
+        Q::Near(_) => Bound::new(py, base.add_subclass(Near))?.into_any(),
+        Q::Distance(_) => Bound::new(py, base.add_subclass(Distance))?.into_any(),
+        _ => Bound::new(py, base)?.into_any(),
+    })
+}
 
-impl Query {
-    fn checked(query: impl Into<nearmiss::Query>, names: Names<'_>) -> PyResult<PyClassInitializer<Query>> {
-        let [broad, order, bv, rebuild] = names;
-        let search = Search {
-            broad: broad.map(|name| named::<Broad>("a broad phase", name)).transpose()?,
-            order: order.map(|name| named::<Order>("an order", name)).transpose()?,
-            bv: bv.map(|name| named::<Bv>("a volume", name)).transpose()?,
-            rebuild: rebuild.map(|name| named::<Rebuild>("a rebuilding", name)).transpose()?,
-            ..Search::default()
-        };
-        let query = query.into().with_search(search);
-        query.check().map_err(raised)?;
-        Ok(PyClassInitializer::from(Query { query }))
+/// The query, if its numbers mean something.
+pub fn checked(query: impl Into<nearmiss::Query>) -> PyResult<nearmiss::Query> {
+    let query = query.into();
+    query.check().map_err(raised)?;
+    Ok(query)
+}
+
+/// Accuracy of a query in motion, and whether it checks the start of the step.
+pub struct Accuracy {
+    pub tolerance: Option<f64>,
+    pub min_separation: f64,
+    pub max_iterations: Option<u32>,
+    pub assume_free: bool,
+}
+
+impl Accuracy {
+    pub fn continuous(&self) -> PyResult<nearmiss::Query> {
+        checked(query::Continuous::by(self.certified()?).assuming_free(self.assume_free))
+    }
+
+    pub fn earliest(&self) -> PyResult<nearmiss::Query> {
+        checked(query::Earliest::by(self.certified()?).assuming_free(self.assume_free))
+    }
+
+    fn certified(&self) -> PyResult<Certified> {
+        let lengths = [("tolerance", self.tolerance), ("min_separation", Some(self.min_separation))];
+        for (name, length) in lengths {
+            if let Some(length) = length.filter(|length| !(0.0..f64::INFINITY).contains(length)) {
+                return Err(choice(
+                    format!("{name} must be finite and at least 0, got {length}"),
+                    "give a length in the unit of the vertices",
+                ));
+            }
+        }
+        // Adding zero turns -0.0 into 0.0.
+        Ok(Certified {
+            tolerance: self.tolerance.map(|length| length + 0.0),
+            min_separation: self.min_separation + 0.0,
+            max_iterations: self.max_iterations,
+            ..Certified::default()
+        })
     }
 }
 
-/// Which triangles share a point now, by exact signs. The answer has bodies and indices.
+pub fn iterations_of(given: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
+    Ok(optional(given, "max_iterations", [1, u32::MAX.into()])?.map(|most| most as u32))
+}
+
+pub fn discrete(adjacent: bool) -> PyResult<nearmiss::Query> {
+    checked(query::Discrete::by(TriangleTest::Exact { adjacent }))
+}
+
+pub fn near(distance: f64) -> PyResult<nearmiss::Query> {
+    checked(query::Near::within(distance))
+}
+
+/// Query for triangles that share a point at t = 0, by exact signs. Answer: TrianglePairs.
 ///
-/// adjacent: whether triangles that share a vertex are asked, too: do they share more than that?
-/// solver:   "exact", or "moller": a float test that can miss and invent.
-/// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never
-/// change the answer. rebuild: "auto", the default, or "never".
+/// - `adjacent`: also test triangles with a common vertex, for points beyond that vertex or edge.
 #[pyclass(module = "nearmiss", frozen, extends = Query)]
 pub struct Discrete;
 
 #[pymethods]
 impl Discrete {
     #[new]
-    #[pyo3(signature = (*, adjacent = false, solver = "exact", broad = None, order = None, bv = None, rebuild = None))]
-    fn new(
-        adjacent: bool,
-        solver: &str,
-        broad: Option<&str>,
-        order: Option<&str>,
-        bv: Option<&str>,
-        rebuild: Option<&str>,
-    ) -> PyResult<PyClassInitializer<Discrete>> {
-        let test = match solver {
-            "exact" => TriangleTest::Exact { adjacent },
-            "moller" if !adjacent => TriangleTest::Moller,
-            "moller" => return Err(choice("adjacent triangles by moller", "choose exact for them")),
-            other => {
-                return Err(choice(
-                    format!("a discrete query by {other}"),
-                    one_of(TriangleTest::ALL.map(|test| test.name().name())),
-                ));
-            }
-        };
-        let query = Query::checked(query::Discrete::by(test), [broad, order, bv, rebuild])?;
-        Ok(query.add_subclass(Discrete))
+    #[pyo3(signature = (*, adjacent = false))]
+    fn new(adjacent: bool) -> PyResult<PyClassInitializer<Discrete>> {
+        Ok(PyClassInitializer::from(Query { query: discrete(adjacent)? }).add_subclass(Discrete))
     }
-}
-
-/// The test of features in motion, and its choices.
-fn in_motion(
-    solver: &str,
-    (tolerance, separation, budget): (Option<f64>, f64, Option<u32>),
-) -> PyResult<ContinuousSolver> {
-    for (name, length) in [("tolerance", tolerance), ("separation", Some(separation))] {
-        if let Some(length) = length.filter(|length| !(0.0..f64::INFINITY).contains(length)) {
-            return Err(choice(
-                format!("{name} = {length}"),
-                "give a length from 0, in the unit of the vertices",
-            ));
-        }
-    }
-    let by = Solver::of(solver).and_then(ContinuousSolver::named);
-    match by {
-        Some(ContinuousSolver::Certified(certified)) => {
-            // Adding zero turns -0.0 into 0.0.
-            let (tolerance, separation) = (tolerance.map(|length| length + 0.0), separation + 0.0);
-            Ok(Certified { tolerance, min_separation: separation, max_iterations: budget, ..certified }
-                .into())
-        }
-        Some(other) if tolerance.is_none() && separation == 0.0 && budget.is_none() => Ok(other),
-        Some(_) => Err(choice(
-            format!("a tolerance, separation or budget for {solver}"),
-            "give them to a certified solver",
-        )),
-        None => Err(choice(
-            format!("a query in motion by {solver}"),
-            one_of(ContinuousSolver::ALL.map(|solver| solver.name().name())),
-        )),
-    }
-}
-
-fn budget_of(given: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
-    Ok(optional(given, "budget", [1, u32::MAX.into()])?.map(|budget| budget as u32))
 }
 
 macro_rules! in_motion {
-    ($(#[$doc:meta])* $kind:ident) => {
+    ($(#[$doc:meta])* $kind:ident by $of:ident) => {
         $(#[$doc])*
         ///
-        /// tolerance:  how well a time is told, as a length moved; default: of two bodies the
-        /// smaller 1e-4 of the mean edge. separation: what comes nearer than this is in contact, in
-        /// the unit of the vertices; 0 for touching. budget:     how many boxes, from 1, a pair may
-        /// cost before it is listed as undecided; not of "certified-f32" without a
-        ///             separation, which tests no boxes.
-        /// assume_free: leaves out the count of triangle pairs that share a point at the start:
-        /// `Contacts.starts_crossing` is None then. solver:     "certified" (none is missed, none
-        /// late), "certified-f32", "certified-f64", or "cubic-f64" and "cubic-f32", which
-        ///             can miss.
-        /// broad, order, bv, rebuild: how candidates are found, by the command line's names; they
-        /// never change the answer. rebuild: "auto", the default, or "never".
+        /// - `tolerance`: accuracy of times, as a length, at least 0. Default: of two bodies the
+        ///   smaller 1e-4 of the mean edge. A smaller one takes longer. None loses a contact.
+        /// - `min_separation`: minimum separation, a length of at least 0. Features that come this
+        ///   near count as contacts. Default 0: touching.
+        /// - `max_iterations`: most iterations for a pair, at least 1. A pair that needs more is
+        ///   reported as undecided. Default 4096.
+        /// - `assume_free`: skip the count of triangle pairs that cross at the start of the step.
         #[pyclass(module = "nearmiss", frozen, extends = Query)]
         pub struct $kind;
 
         #[pymethods]
         impl $kind {
             #[new]
-            #[pyo3(signature = (
-                *, tolerance = None, separation = 0.0, budget = None, assume_free = false, solver = "certified",
-                broad = None, order = None, bv = None, rebuild = None,
-            ))]
-            #[allow(clippy::too_many_arguments, reason = "they are named")]
+            #[pyo3(signature = (*, tolerance = None, min_separation = 0.0, max_iterations = None, assume_free = false))]
             fn new(
                 tolerance: Option<f64>,
-                separation: f64,
-                #[pyo3(from_py_with = budget_of)] budget: Option<u32>,
+                min_separation: f64,
+                #[pyo3(from_py_with = iterations_of)] max_iterations: Option<u32>,
                 assume_free: bool,
-                solver: &str,
-                broad: Option<&str>,
-                order: Option<&str>,
-                bv: Option<&str>,
-                rebuild: Option<&str>,
             ) -> PyResult<PyClassInitializer<$kind>> {
-                let solver = in_motion(solver, (tolerance, separation, budget))?;
-                let query = query::$kind::by(solver).assuming_free(assume_free);
-                Ok(Query::checked(query, [broad, order, bv, rebuild])?.add_subclass($kind))
+                let accuracy = Accuracy { tolerance, min_separation, max_iterations, assume_free };
+                Ok(PyClassInitializer::from(Query { query: accuracy.$of()? }).add_subclass($kind))
             }
         }
     };
 }
 
 in_motion! {
-    /// What meets while vertices move in straight lines, and when first: kind, indices, toi, toi_upper, status.
-    Continuous
+    /// Query for all contacts of a step, with certified times. Answer: Contacts.
+    ///
+    /// Vertices move in straight lines from t = 0 to t = 1. Features with a common vertex are left
+    /// out.
+    Continuous by continuous
 }
 in_motion! {
-    /// When the first of all meets: how far a step may go. The answer's `earliest`, in [0, 1], is never late; None: nothing meets.
-    /// Triangles that cross at the start need not meet again: `Contacts.is_free` says whether the
-    /// step is free.
-    Earliest
+    /// Query for the first contact of a step: how long a step is safe. Answer: FirstContact.
+    ///
+    /// Vertices move in straight lines from t = 0 to t = 1. No contact is before the returned time.
+    Earliest by earliest
 }
 
-/// Which vertices and faces, and which edges, are within a distance of each other now, and where they are nearest.
+/// Query for features within a distance at t = 0. Answer: NearPairs.
 ///
-/// distance: a length above 0, in the unit of the vertices. None within it is missed.
-/// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never
-/// change the answer. rebuild: "auto", the default, or "never".
+/// - `distance`: a length above 0, in the unit of the vertices. No pair within it is missed.
+///
+/// A pair is a vertex and a face, or two edges. Features with a common vertex are left out.
 #[pyclass(module = "nearmiss", frozen, extends = Query)]
 pub struct Near;
 
 #[pymethods]
 impl Near {
     #[new]
-    #[pyo3(signature = (distance, *, broad = None, order = None, bv = None, rebuild = None))]
-    fn new(
-        distance: f64,
-        broad: Option<&str>,
-        order: Option<&str>,
-        bv: Option<&str>,
-        rebuild: Option<&str>,
-    ) -> PyResult<PyClassInitializer<Near>> {
-        let query = Query::checked(query::Near::within(distance), [broad, order, bv, rebuild])?;
-        Ok(query.add_subclass(Near))
+    fn new(distance: f64) -> PyResult<PyClassInitializer<Near>> {
+        Ok(PyClassInitializer::from(Query { query: near(distance)? }).add_subclass(Near))
     }
 }
 
-/// How far apart the nearest two bodies are now, and where: 0 if and only if they share a point.
+/// Query for the distance of the nearest two bodies at t = 0. Answer: NearestTriangles.
+///
+/// The distance is 0 if and only if two bodies share a point. A body has no distance from itself.
 #[pyclass(module = "nearmiss", frozen, extends = Query)]
 pub struct Distance;
 
@@ -275,6 +265,6 @@ pub struct Distance;
 impl Distance {
     #[new]
     fn new() -> PyResult<PyClassInitializer<Distance>> {
-        Ok(Query::checked(query::Distance::default(), [None; 4])?.add_subclass(Distance))
+        Ok(PyClassInitializer::from(Query { query: nearmiss::Query::distance() }).add_subclass(Distance))
     }
 }

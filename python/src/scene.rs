@@ -1,30 +1,29 @@
-//! Which bodies there are, and what each does.
+//! Bodies, and scenes of them.
 
-use crate::detector::python;
 use crate::errors::{choice, integer, one_of, optional, raised};
 use crate::frame::known;
 use crate::host::{Most, faces, points, positions, rows};
 use crate::query::{Remade, remade};
 use nearmiss::Mesh;
-use nearmiss::scene::CollisionFilter;
+use nearmiss::scene::{BodyKind, CollisionFilter};
 use nearmiss::words::counted;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
-/// A mesh, what it does from frame to frame, and which others it may meet.
+/// Mesh that takes part in a scene: its way to move, and the bodies that it may meet.
 ///
-/// vertices:     (n, 3) numbers; float32 and float64 are kept as they are, others become float64. Copied.
-/// faces:        (m, 3) integers, the vertices of each triangle, from 0. Copied.
-/// kind:         "deformable" (each vertex moves by itself), "rigid" (a Pose a frame) or "static" (never moves; cheapest).
-/// self_collision: whether it is tested against itself. Deformable bodies are by default (None),
-/// rigid bodies if it is True,
-///               static bodies never: True is refused for them.
-/// environment:  bodies of different environments never meet; None: in every one.
-/// group, mask:  two bodies meet if each is in a group (a bit of 32) that the other's mask has. ~1: all bits but the lowest.
-/// name:         what messages call it.
+/// - `vertices`: (n, 3) numbers, copied. float32 and float64 are kept, others become float64.
+/// - `faces`: (m, 3) integers from 0, the vertices of each triangle, copied.
+/// - `kind`: "deformable" (each vertex moves by itself), "rigid" (moves by a Pose) or "fixed" (never
+///   moves; cheapest).
+/// - `self_collision`: whether the body is tested against itself. Default: deformable bodies are,
+///   rigid bodies are not. Fixed bodies never are: True raises InvalidArgumentError.
+/// - `environment`: bodies of different environments never meet; None is in all of them.
+/// - `group`, `mask`: 32 bits each. Two bodies meet if each is in a group of the other's mask. ~1
+///   is all bits except the lowest.
+/// - `name`: name of the body in messages.
 ///
-/// Raises InputError for vertices that are not finite and for indices that are not there,
-/// InvalidArgumentError for self-collision of a static body.
+/// Raises InputError for vertices that are not finite and for indices without a vertex.
 #[pyclass(module = "nearmiss", frozen)]
 pub struct Body {
     pub body: nearmiss::Body,
@@ -33,10 +32,14 @@ pub struct Body {
 #[pymethods]
 impl Body {
     #[new]
-    #[pyo3(signature = (
-        vertices, faces, *, kind = "deformable", self_collision = None, environment = Some(0),
-        group = u32::MAX, mask = u32::MAX, name = "a mesh",
-    ))]
+    #[pyo3(
+        signature = (
+            vertices, faces, *, kind = "deformable", self_collision = None, environment = Some(0),
+            group = u32::MAX, mask = u32::MAX, name = "a mesh",
+        ),
+        text_signature = "(vertices, faces, *, kind='deformable', self_collision=None, environment=0, \
+            group=0xFFFFFFFF, mask=0xFFFFFFFF, name='a mesh')"
+    )]
     #[allow(clippy::too_many_arguments, reason = "they are named")]
     fn new(
         py: Python<'_>,
@@ -52,35 +55,36 @@ impl Body {
         let make = match kind {
             "deformable" => nearmiss::Body::deformable,
             "rigid" => nearmiss::Body::rigid,
-            "static" => nearmiss::Body::fixed,
+            "fixed" => nearmiss::Body::fixed,
             other => {
                 return Err(choice(
-                    format!("a body of kind {other}"),
-                    one_of(["deformable", "rigid", "static"]),
+                    format!("kind has no choice {other:?}"),
+                    one_of(["deformable", "rigid", "fixed"]),
                 ));
             }
         };
         let given = positions(vertices, &format!("vertices of {name}"), Most::OfAnyMesh)?;
         let triangles = self::faces(faces, name, given.len())?;
-        let meets = CollisionFilter { environment, group, mask, self_collision };
+        let on_itself = self_collision;
+        let meets = CollisionFilter { environment, group, mask, self_collision: on_itself };
         let made = py.detach(|| Mesh::new(name, given, triangles).map(|mesh| make(mesh).with_filter(meets)));
         let body = made.and_then(|body| body.check_filter().map(|()| body));
         Ok(Body { body: body.map_err(raised)? })
     }
 
-    /// What messages call it.
+    /// Name of the body in messages.
     #[getter]
     fn name(&self) -> &str {
         self.body.name()
     }
 
-    /// How many vertices.
+    /// Number of vertices.
     #[getter]
     fn vertex_count(&self) -> usize {
         self.body.vertex_count()
     }
 
-    /// How many triangles.
+    /// Number of triangles.
     #[getter]
     fn face_count(&self) -> usize {
         self.body.face_count()
@@ -91,7 +95,12 @@ impl Body {
         let (py, Body { body: own }) = (body.py(), body.get());
         let mesh = (points(py, own.positions_t0()), rows(py, own.faces())).into_pyobject(py)?;
         let (named, meets) = (PyDict::new(py), own.filter());
-        named.set_item("kind", python(py, &own.kind())?)?;
+        let kind = match own.kind() {
+            BodyKind::Fixed => "fixed",
+            BodyKind::Rigid => "rigid",
+            _ => "deformable",
+        };
+        named.set_item("kind", kind)?;
         named.set_item("self_collision", meets.self_collision)?;
         named.set_item("environment", meets.environment)?;
         named.set_item("group", meets.group)?;
@@ -130,8 +139,9 @@ fn bits(given: &Bound<'_, PyAny>, name: &str) -> PyResult<u32> {
 
 /// Bodies, numbered from 0 in the order in which they are added.
 ///
-/// A detector takes a copy; from then on the scene is not changed: add, remove and replace bodies
-/// of the detector.
+/// - `bodies`: the first bodies.
+///
+/// A detector takes a copy. From then on, add, remove and replace bodies of the detector.
 #[pyclass(module = "nearmiss")]
 pub struct Scene {
     pub scene: nearmiss::Scene,
@@ -144,7 +154,7 @@ impl Scene {
     fn is_free(&self, change: &str) -> PyResult<()> {
         if self.taken {
             return Err(choice(
-                format!("{change} a scene of which a detector has a copy, which would not change"),
+                format!("cannot {change} a scene after a detector has copied it"),
                 "add, remove or replace bodies of the detector, or make another Scene",
             ));
         }
@@ -159,32 +169,30 @@ impl Scene {
     fn new(bodies: &Bound<'_, PyTuple>) -> PyResult<Scene> {
         let mut scene = nearmiss::Scene::new();
         for body in bodies {
-            let body = body.cast::<Body>().map_err(|_| {
-                choice(
-                    format!("a scene of {}", body.get_type()),
-                    "give bodies: Scene(a, b), or Scene(*bodies)",
-                )
-            })?;
+            let Ok(body) = body.cast::<Body>() else {
+                let what = format!("bodies must be Body objects, got {}", body.get_type().name()?);
+                return Err(choice(what, "use Scene(a, b), or Scene(*bodies)"));
+            };
             scene.add(body.get().body.clone());
         }
         Ok(Scene { scene, taken: false })
     }
 
-    /// Adds a body: its number.
+    /// Add a body, and return its number.
     fn add(&mut self, body: &Body) -> PyResult<usize> {
-        self.is_free("adding to")?;
+        self.is_free("add a body to")?;
         Ok(self.scene.add(body.body.clone()).index())
     }
 
-    /// Takes the body of that number out; the next one that is added may have its number.
+    /// Remove the body with that number. The next body that is added may take its number.
     fn remove(&mut self, body: usize) -> PyResult<()> {
-        self.is_free("removing from")?;
+        self.is_free("remove a body from")?;
         let id = known(body, self.scene.id(body))?;
         self.scene.remove(id);
         Ok(())
     }
 
-    /// The numbers of all bodies, ascending.
+    /// Numbers of all bodies, ascending.
     #[getter]
     fn bodies(&self) -> Vec<usize> {
         self.scene.ids().map(|id| id.index()).collect()

@@ -14,31 +14,36 @@ V, F = two_triangles()
 CPU = nm.Device("cpu", threads=1)
 
 
-def detector(query=None):
-    return nm.Detector(nm.Body(V, F, name="the two"), query or nm.Continuous(), CPU)
+def detector():
+    return nm.Detector(nm.Body(V, F, name="the two"), device=CPU)
 
 
 NAN = np.full((6, 3), np.nan, np.float32)
+configure = nm.research.configure
+
 
 def geometry(query):
-    asked = detector(query)
-    return asked.geometry(asked.detect())
+    own = detector()
+    return own.geometry(own.query(query))
 
 
 REFUSED = [
     (lambda: nm.Near(0), nm.InvalidArgumentError, "a distance of 0"),
     (lambda: nm.Near(np.nan), nm.InvalidArgumentError, "a distance of NaN"),
-    (lambda: nm.Continuous(separation=-1), nm.InvalidArgumentError, "separation"),
-    (lambda: nm.Continuous(solver="exact"), nm.InvalidArgumentError, '"certified"'),
-    (lambda: nm.Earliest(solver="cubic-f64", separation=1), nm.InvalidArgumentError, "cubic-f64"),
-    (lambda: nm.Discrete(solver="certified"), nm.InvalidArgumentError, '"moller"'),
-    (lambda: nm.Discrete(solver="moller", adjacent=True), nm.InvalidArgumentError, "adjacent"),
-    (lambda: nm.Discrete(broad="octree"), nm.InvalidArgumentError, '"tree", "tiles"'),
-    (lambda: nm.Discrete(broad="tree", order="median"), nm.InvalidArgumentError, "order of tiles for trees"),
+    (lambda: nm.Continuous(min_separation=-1), nm.InvalidArgumentError, "min_separation must be finite and at least 0, got -1"),
+    (lambda: configure(nm.Continuous(), solver="exact"), nm.InvalidArgumentError, 'has no solver "exact"; choose one of "certified"'),
+    (lambda: configure(nm.Earliest(min_separation=1), solver="cubic-f64"), nm.InvalidArgumentError, '"cubic-f64" takes no'),
+    (lambda: configure(nm.Discrete(), solver="certified"), nm.InvalidArgumentError, '"moller"'),
+    (lambda: configure(nm.Discrete(adjacent=True), solver="moller"), nm.InvalidArgumentError, "adjacent"),
+    (lambda: configure(nm.Discrete(), broad_phase="octree"), nm.InvalidArgumentError, '"tree", "tiles"'),
+    (lambda: configure(nm.Discrete(), broad_phase="tree", order="runs"), nm.InvalidArgumentError, "order of tiles for trees"),
+    (lambda: configure(nm.Distance(), broad_phase="tiles"), nm.InvalidArgumentError, "a distance query by tiles"),
+    (lambda: configure(nm.Near(1), rebuild="often"), nm.InvalidArgumentError, '"auto", "manual"'),
     (lambda: nm.Device("gpu"), nm.InvalidArgumentError, '"cuda"'),
     (lambda: nm.Device("cpu", gpu=0), nm.InvalidArgumentError, "threads for a CPU"),
+    (lambda: nm.Device("cpu", memory_limit=0), nm.InvalidArgumentError, "memory_limit must be an integer from 1"),
     (lambda: nm.Device(gpu=0, stream=1), nm.InvalidArgumentError, "a stream is of the GPU"),
-    (lambda: nm.Device(stream="mine"), nm.InvalidArgumentError, "a stream of type str"),
+    (lambda: nm.Device(stream="mine"), nm.InvalidArgumentError, "stream must be a stream of CUDA, got str"),
     (lambda: nm.Body(V, F, kind="soft"), nm.InvalidArgumentError, '"rigid"'),
     (lambda: nm.Body(V[:, :2], F, name="flat"), nm.InvalidArgumentError, "vertices of flat of shape [6, 2]"),
     (lambda: nm.Body(V.astype(complex), F), nm.InvalidArgumentError, "complex128"),
@@ -47,32 +52,33 @@ REFUSED = [
     (lambda: nm.Body(V, [[0, 1, 6]]), nm.InputError, "corner 2 names vertex 6"),
     (lambda: nm.Body(NAN, F, name="nothing"), nm.InputError, "nothing: vertex 0 has x = NaN"),
     *(
-        (lambda name=name, value=value: nm.Body(V, F, **{name: value}), nm.InvalidArgumentError, f"{name} = {value!r}; give an integer from")
+        (lambda name=name, value=value: nm.Body(V, F, **{name: value}), nm.InvalidArgumentError, f"{name} must be an integer from")
         for name, value in [("mask", 2**32), ("mask", -(2**40)), ("mask", "x"), ("group", 1.5), ("environment", -1), ("environment", 2**80)]
     ),
-    (lambda: nm.Continuous(budget=-1), nm.InvalidArgumentError, "budget = -1; give an integer from 1"),
-    (lambda: nm.Earliest(budget=0), nm.InvalidArgumentError, "budget = 0; give an integer from 1"),
-    (
-        lambda: nm.Detector(nm.Body(V, F), nm.Continuous(budget=9, solver="certified-f32"), CPU),
-        nm.InvalidArgumentError,
-        "a budget of boxes for certified-f32 without a separation",
-    ),
-    (lambda: nm.Continuous(tolerance=-1), nm.InvalidArgumentError, "tolerance = -1; give a length from 0"),
-    (lambda: nm.Earliest(tolerance=np.nan), nm.InvalidArgumentError, "tolerance = NaN; give a length from 0"),
-    (lambda: nm.Continuous(separation=np.inf), nm.InvalidArgumentError, "separation = inf; give a length from 0"),
-    (lambda: nm.Device(gpu=-1), nm.InvalidArgumentError, "gpu = -1; give an integer from 0"),
-    (lambda: nm.Device("cuda", threads=2), nm.InvalidArgumentError, "threads of a GPU, which takes none"),
-    (lambda: nm.Device("cpu", threads=0), nm.InvalidArgumentError, "threads = 0; give an integer from 1 to 1024"),
-    (lambda: nm.Device("cpu", threads=-1), nm.InvalidArgumentError, "threads = -1; give"),
-    (lambda: nm.Device("cpu", threads=1025), nm.InvalidArgumentError, "threads = 1025; give"),
-    (lambda: nm.Scene([nm.Body(V, F)]), nm.InvalidArgumentError, "a scene of <class 'list'>; give bodies: Scene(a, b), or Scene(*bodies)"),
-    (lambda: nm.Detector([nm.Body(V, F)], nm.Discrete(), CPU), nm.InvalidArgumentError, "Detector(Scene(*bodies), query)"),
-    (lambda: detector().frame({1: V}), nm.InvalidArgumentError, "body 1, which is not in the scene"),
-    (lambda: detector().frame({0: V[:3]}), nm.NearmissError, "3"),
-    (lambda: detector().frame({0: (V, NAN)}), nm.InputError, "NaN"),
-    (lambda: detector().frame({0: (V, [[np.inf] * 3] * 6)}), nm.InputError, "inf"),
-    (lambda: detector().frame({0: nm.Pose()}), nm.InvalidArgumentError, "the two"),
-    (lambda: detector().frame({0: (V, nm.Pose())}), nm.InvalidArgumentError, "of type object"),
+    (lambda: nm.Continuous(max_iterations=-1), nm.InvalidArgumentError, "max_iterations must be an integer from 1 to 4294967295, got -1"),
+    (lambda: nm.Earliest(max_iterations=0), nm.InvalidArgumentError, "max_iterations must be an integer from 1"),
+    (lambda: detector().earliest(max_iterations=0), nm.InvalidArgumentError, "max_iterations must be an integer from 1"),
+    (lambda: configure(nm.Continuous(max_iterations=9), solver="certified-f32"), nm.InvalidArgumentError, "for certified-f32 without a"),
+    (lambda: nm.Continuous(tolerance=-1), nm.InvalidArgumentError, "tolerance must be finite and at least 0, got -1"),
+    (lambda: nm.Earliest(tolerance=np.nan), nm.InvalidArgumentError, "tolerance must be finite and at least 0, got NaN"),
+    (lambda: detector().continuous(tolerance=-1), nm.InvalidArgumentError, "tolerance must be finite and at least 0, got -1"),
+    (lambda: nm.Continuous(min_separation=np.inf), nm.InvalidArgumentError, "min_separation must be finite and at least 0, got inf"),
+    (lambda: detector().near(0), nm.InvalidArgumentError, "a distance of 0"),
+    (lambda: nm.Device(gpu=-1), nm.InvalidArgumentError, "gpu must be an integer from 0"),
+    (lambda: nm.Device("cuda", threads=2), nm.InvalidArgumentError, 'backend "cuda" takes no threads'),
+    (lambda: nm.Device("cpu", threads=0), nm.InvalidArgumentError, "threads must be an integer from 1 to 1024, got 0"),
+    (lambda: nm.Device("cpu", threads=-1), nm.InvalidArgumentError, "1024, got -1"),
+    (lambda: nm.Device("cpu", threads=1025), nm.InvalidArgumentError, "1024, got 1025"),
+    (lambda: nm.Scene([nm.Body(V, F)]), nm.InvalidArgumentError, "bodies must be Body objects, got list; use Scene(a, b), or Scene(*bodies)"),
+    (lambda: nm.Detector([nm.Body(V, F)]), nm.InvalidArgumentError, "got list; use Detector(Scene(*bodies))"),
+    (lambda: nm.Detector(nm.Body(V, F), nm.Discrete()), TypeError, "positional"),
+    (lambda: detector().query(nm.Discrete), TypeError, "Query"),
+    (lambda: detector().update({1: V}), nm.InvalidArgumentError, "body 1 is not in the scene"),
+    (lambda: detector().update({0: V[:3]}), nm.NearmissError, "3"),
+    (lambda: detector().update({0: (V, NAN)}), nm.InputError, "NaN"),
+    (lambda: detector().update({0: (V, [[np.inf] * 3] * 6)}), nm.InputError, "inf"),
+    (lambda: detector().update({0: nm.Pose()}), nm.InvalidArgumentError, "the two"),
+    (lambda: detector().update({0: (V, nm.Pose())}), nm.InvalidArgumentError, "of type object"),
     (lambda: nm.Pose(rotation=(1, 2, 3)), nm.InvalidArgumentError, "a rotation of 3 numbers"),
     (lambda: nm.Pose(rotation=5), nm.InvalidArgumentError, "a rotation of shape []; give 4"),
     (lambda: nm.Pose(translation=[[0, 0, 1]]), nm.InvalidArgumentError, "a translation of shape [1, 3]; give 3"),
@@ -80,21 +86,17 @@ REFUSED = [
     (lambda: nm.Pose(translation=(0, np.nan, 0)), nm.InputError, "NaN"),
     (lambda: nm.Pose(rotation=(1, 1, 1, 1)), nm.InputError, "the pose [1.0, 1.0, 1.0, 1.0]"),
     (lambda: nm.Pose(translation=(0, 0, 1e200)), nm.InputError, "2^480"),
-    (lambda: detector().frame({-1: V}), nm.InvalidArgumentError, "body -1, which is no number of one"),
-    (lambda: detector().frame({"0": V}), nm.InvalidArgumentError, "body '0', which is no number of one"),
-    (lambda: detector().frame({0: [V, V]}), nm.InvalidArgumentError, "of shape [2, 6, 3]; give rows of three: shape (n, 3); both ends"),
-    (lambda: detector().frame({0: [nm.Pose(), nm.Pose()]}), nm.InvalidArgumentError, "a list of poses; give both ends"),
-    (lambda: detector().frame([V]), nm.InvalidArgumentError, "inputs of type <class 'list'>; give a dictionary"),
-    (lambda: detector().prepare(V), nm.InvalidArgumentError, "inputs of type <class 'numpy.ndarray'>"),
-    (lambda: detector().detect().distances, nm.InvalidArgumentError, "contacts in time"),
-    (lambda: detector(nm.Discrete()).detect().toi, nm.InvalidArgumentError, "triangle pairs"),
-    (lambda: detector(nm.Earliest()).detect().indices, nm.InvalidArgumentError, "one time"),
+    (lambda: detector().update({-1: V}), nm.InvalidArgumentError, "keys of inputs must be body numbers, got -1"),
+    (lambda: detector().update({"0": V}), nm.InvalidArgumentError, "keys of inputs must be body numbers, got '0'"),
+    (lambda: detector().update({0: [V, V]}), nm.InvalidArgumentError, "of shape [2, 6, 3]; give rows of three: shape (n, 3); both ends"),
+    (lambda: detector().update({0: [nm.Pose(), nm.Pose()]}), nm.InvalidArgumentError, "positions of body 0 are a list of poses; give both ends"),
+    (lambda: detector().update([V]), nm.InvalidArgumentError, "inputs must be a mapping from body numbers, got <class 'list'>"),
+    (lambda: detector().prepare(V, [nm.Near(1)]), nm.InvalidArgumentError, "got <class 'numpy.ndarray'>"),
     (lambda: geometry(nm.Discrete()), nm.InvalidArgumentError, "a discrete query, which has no pairs of features; use"),
     (lambda: geometry(nm.Earliest()), nm.InvalidArgumentError, "an earliest query, which has no pairs of features; use"),
     (lambda: geometry(nm.Distance()), nm.InvalidArgumentError, "a distance query, which has no pairs of features; read"),
-    (lambda: detector(nm.Near(1)).detect().earliest, nm.InvalidArgumentError, "near pairs"),
     (lambda: detector().submit(), nm.InvalidArgumentError, "prepare"),
-    (lambda: detector().prepare({0: V.tolist()}), nm.InvalidArgumentError, "arrays that stay"),
+    (lambda: detector().prepare({0: V.tolist()}, [nm.Near(1)]), nm.InvalidArgumentError, "cannot be read in place by a submission; give arrays that stay"),
     (lambda: nm.read_mesh("no such file.ply"), nm.InputError, "no such file.ply"),
 ]
 
@@ -123,32 +125,33 @@ def test_the_same_fault_is_of_one_class_wherever_it_is_given():
         points[0, 1] = bad
         for make in [
             lambda: nm.Body(points, F),
-            lambda: detector().frame({0: points}),
-            lambda: detector().frame({0: (V, points)}),
+            lambda: detector().update({0: points}),
+            lambda: detector().update({0: (V, points)}),
             lambda: nm.Pose(translation=(0, bad, 0)),
             lambda: nm.self_intersections(points, F),
         ]:
             with pytest.raises(nm.InputError):
                 make()
-    for call in [lambda: nm.Body(V[:, :2], F), lambda: detector().frame({5: V}), lambda: nm.Near(np.nan)]:
+    for call in [lambda: nm.Body(V[:, :2], F), lambda: detector().update({5: V}), lambda: nm.Near(np.nan)]:
         with pytest.raises(nm.InvalidArgumentError):
             call()
 
 
 @pytest.mark.parametrize("query", [nm.Discrete(), nm.Continuous(), nm.Earliest(), nm.Near(1), nm.Distance()])
 def test_a_scene_without_bodies_answers_nothing(query):
-    asked = nm.Detector(nm.Scene(), query, CPU)
-    for ask in [asked.detect, asked.frame, lambda: asked.frame({}), lambda: asked.prepare({})]:
-        found = ask()
-        assert len(found) == 0
-        assert asked.summary(found)["contacts"] == 0
-    asked.submit()
-    assert len(asked.collect()) == 0
-    asked.rebuild(), asked.plan()
+    own = nm.Detector(nm.Scene(), device=CPU)
+    for call in [lambda: own.query(query), lambda: own.step({}, query)]:
+        found = call()
+        assert own.summary(found)["contacts"] == 0
+        assert getattr(found, "toi", None) is None or len(found.toi) == 0
+    own.prepare({}, [query])
+    own.submit()
+    assert own.summary(own.collect(query))["contacts"] == 0 and own.on_device(query) is None
+    own.rebuild(), own.plan(query)
     for _ in range(2):
-        asked.add(nm.Body(V, F, kind="rigid"))
-    wanted = nm.Detector(nm.Scene(*[nm.Body(V, F, kind="rigid")] * 2), query, CPU)
-    assert asked.detect().hash == wanted.detect().hash
+        own.add(nm.Body(V, F, kind="rigid"))
+    wanted = nm.Detector(nm.Scene(*[nm.Body(V, F, kind="rigid")] * 2), device=CPU)
+    assert own.query(query).hash == wanted.query(query).hash
 
 
 def test_a_mesh_that_lacks_a_part_of_its_file_warns(tmp_path):
@@ -173,32 +176,33 @@ def test_a_mesh_that_lacks_a_part_of_its_file_warns(tmp_path):
         assert len(nm.read_mesh(path)[0]) == len(nm.read_mesh(path, strict=True)[0]) == 4
 
 
-def test_nothing_moves_where_a_frame_is_refused():
-    asked = detector(nm.Discrete())
-    before = asked.detect().hash
-    with pytest.raises(nm.InputError):
-        asked.frame({0: NAN})
-    assert asked.detect().hash == before and asked.frame().hash == before
+def test_nothing_moves_if_an_update_is_refused():
+    own = detector()
+    before = own.discrete().hash
+    for call in [lambda: own.update({0: NAN}), lambda: own.step({0: NAN}, nm.Discrete()), lambda: own.update({0: V + 1, 1: V})]:
+        with pytest.raises(nm.NearmissError):
+            call()
+        assert own.discrete().hash == before == own.step({}, nm.Discrete()).hash
 
 
-def test_other_bodies_answer_as_before_where_a_frame_is_refused():
+def test_other_bodies_answer_as_before_if_an_update_is_refused():
     vertices, faces = sheet(10, lambda x, y: np.sin(30 * x) * 0.05)
-    scene = nm.Scene(nm.Body(vertices, faces), nm.Body(vertices + 0.01, faces))
-    asked, wanted = nm.Detector(scene, nm.Near(0.05)), nm.Detector(scene, nm.Near(0.05))
+    scene, near = nm.Scene(nm.Body(vertices, faces), nm.Body(vertices + 0.01, faces)), nm.Near(0.05)
+    own, wanted = nm.Detector(scene), nm.Detector(scene)
     bad = vertices + 0.02
     bad[7, 1] = np.nan
     with pytest.raises(nm.InputError, match="vertex 7 has y"):
-        asked.frame({1: bad})
-    found = asked.frame({0: vertices + 0.001})
-    assert len(found) > 0 and found.hash == wanted.frame({0: vertices + 0.001}).hash
+        own.step({1: bad}, near)
+    found = own.step({0: vertices + 0.001}, near)
+    assert len(found) > 0 and found.hash == wanted.step({0: vertices + 0.001}, near).hash
 
 
-def test_a_scene_is_filled_after_its_first_frame():
+def test_a_scene_is_filled_after_its_first_query():
     vertices, faces = sheet(10, lambda x, y: np.sin(30 * x) * 0.05)
-    asked = nm.Detector(nm.Scene(nm.Body(vertices, faces)), nm.Near(0.05))
-    assert len(asked.frame({0: vertices + 0.01})) == 0
-    asked.add(nm.Body(vertices, faces))
-    assert len(asked.detect()) > 0
+    own = nm.Detector(nm.Scene(nm.Body(vertices, faces)))
+    assert len(own.step({0: vertices + 0.01}, nm.Near(0.05))) == 0
+    own.add(nm.Body(vertices, faces))
+    assert len(own.near(0.05)) > 0
 
 
 def test_geometry_of_other_bodies_is_refused():
@@ -206,55 +210,57 @@ def test_geometry_of_other_bodies_is_refused():
     found = nm.near(vertices, faces, 0.3)
     assert len(found) > 0
     with pytest.raises(nm.InvalidArgumentError):
-        detector(nm.Near(0.3)).geometry(found)
+        detector().geometry(found)
 
 
 def moves():
-    """What moves bodies, or may."""
-    yield lambda asked: asked.frame({0: V + np.float32([5, 5, 5])})
-    yield lambda asked: asked.frame()
-    yield lambda asked: asked.prepare({0: V.copy()})
-    yield lambda asked: asked.add(nm.Body(V, F))
-    yield lambda asked: asked.replace(0, nm.Body(V + 1, F))
-    yield lambda asked: (asked.add(nm.Body(V, F)), asked.remove(0))
+    """Calls that move bodies, or may."""
+    yield lambda own: own.update({0: V + np.float32([5, 5, 5])})
+    yield lambda own: own.step({}, nm.Near(1))
+    yield lambda own: own.prepare({0: V.copy()}, [nm.Near(1)])
+    yield lambda own: own.add(nm.Body(V, F))
+    yield lambda own: own.replace(0, nm.Body(V + 1, F))
+    yield lambda own: (own.add(nm.Body(V, F)), own.remove(0))
 
 
 @pytest.mark.parametrize("move", list(moves()))
-def test_contacts_of_before_are_refused(move):
-    asked = detector(nm.Near(1))
-    found = asked.detect()
+def test_answers_of_before_are_refused(move):
+    own = detector()
+    found = own.near(1)
     for _ in range(2):
-        assert len(asked.geometry(found)) == len(found) == asked.summary(found)["contacts"]
-        asked.detect()
-        asked.rebuild()
-        asked.plan()
-    move(asked)
-    for ask in [asked.geometry, asked.summary]:
-        with pytest.raises(nm.InvalidArgumentError, match="contacts that were found before"):
-            ask(found)
-    again = asked.detect()
-    assert len(asked.geometry(again)) == len(again)
+        assert len(own.geometry(found)) == len(found) == own.summary(found)["contacts"]
+        own.near(0.5), own.discrete(), own.continuous(), own.distance()
+        own.rebuild()
+        own.plan(nm.Near(1))
+        own.download_positions(0)
+    move(own)
+    for call in [own.geometry, own.summary]:
+        with pytest.raises(nm.InvalidArgumentError, match="the answer was found before"):
+            call(found)
+    again = own.near(1)
+    assert len(own.geometry(again)) == len(again)
 
 
-def test_contacts_of_a_submission_are_of_it():
-    asked = detector(nm.Near(1))
+def test_answers_of_a_submission_are_of_it():
+    own, near = detector(), nm.Near(1)
     here = V.copy()
-    found = asked.prepare({0: here})
-    assert len(asked.geometry(found)) == len(found)
+    own.prepare({0: here}, [near])
+    found = own.collect(near)
+    assert len(own.geometry(found)) == len(found)
     here[3:, 2] += 0.25
-    asked.submit()
+    own.submit()
     with pytest.raises(nm.InvalidArgumentError, match="found before"):
-        asked.geometry(found)
-    later = asked.collect()
-    assert len(asked.geometry(later)) == len(later) == asked.summary(later)["contacts"]
+        own.geometry(found)
+    later = own.collect(near)
+    assert len(own.geometry(later)) == len(later) == own.summary(later)["contacts"]
 
 
-def test_contacts_of_another_detector_are_refused():
-    found = detector(nm.Near(1)).detect()
-    other = detector(nm.Near(1))
-    for ask in [other.geometry, other.summary]:
-        with pytest.raises(nm.InvalidArgumentError, match="contacts of another detector"):
-            ask(found)
+def test_answers_of_another_detector_are_refused():
+    found = detector().near(1)
+    other = detector()
+    for call in [other.geometry, other.summary]:
+        with pytest.raises(nm.InvalidArgumentError, match="the answer is of another detector"):
+            call(found)
 
 
 def test_no_gpu_says_so():
@@ -269,13 +275,13 @@ def test_no_gpu_says_so():
 @pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
 def test_a_forked_process_is_told():
     own = detector()
-    own.detect()
+    own.continuous()
     child = os.fork()
     if child == 0:
         # Where it waits for ever this ends it.
         signal.alarm(60)
         try:
-            own.detect()
+            own.continuous()
         except nm.InvalidArgumentError as error:
             os._exit(0 if "spawn" in str(error) else 2)
         finally:

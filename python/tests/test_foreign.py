@@ -16,8 +16,8 @@ QUERIES = [nm.Discrete(), nm.Continuous(), nm.Earliest(), nm.Near(1), nm.Distanc
 PREPARED = """
 import numpy as np, nearmiss as nm
 vertices = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, -1], [1, 1, 1], [2, 1, 1]], np.float32)
-detector = nm.Detector(nm.Body(vertices, [[0, 1, 2], [3, 4, 5]]), nm.Near(1), nm.Device("cpu", threads=1))
-detector.prepare({0: vertices})
+detector, near = nm.Detector(nm.Body(vertices, [[0, 1, 2], [3, 4, 5]]), device=nm.Device("cpu", threads=1)), nm.Near(1)
+detector.prepare({0: vertices}, [near])
 detector.submit()
 """
 
@@ -31,9 +31,9 @@ def ended(program):
 @pytest.mark.parametrize(
     "kept",
     [
-        "status = np.from_dlpack(detector.on_device().status)",
-        "capsule = detector.on_device().status.__dlpack__(); del detector",
-        "import builtins; builtins.kept = [np.from_dlpack(detector.on_device().status)]; builtins.kept.append(builtins.kept)",
+        "status = np.from_dlpack(detector.on_device(near).status)",
+        "capsule = detector.on_device(near).status.__dlpack__(); del detector",
+        "import builtins; builtins.kept = [np.from_dlpack(detector.on_device(near).status)]; builtins.kept.append(builtins.kept)",
     ],
 )
 def test_what_is_kept_to_the_end_ends_nothing(kept):
@@ -47,12 +47,12 @@ def test_the_end_is_seen():
 @pytest.mark.parametrize("query", QUERIES, ids=repr)
 def test_every_column_of_the_device_can_be_taken(query):
     scene = nm.Scene(nm.Body(V[:3], F[:1]), nm.Body(V[3:], F[:1]))
-    detector = nm.Detector(scene, query, CPU)
+    detector = nm.Detector(scene, device=CPU)
     is_at_rest = not isinstance(query, (nm.Continuous, nm.Earliest))
     ends = [V[:3].copy(), V[3:].copy()]
-    detector.prepare({k: at if is_at_rest else (at, at) for k, at in enumerate(ends)})
+    detector.prepare({k: at if is_at_rest else (at, at) for k, at in enumerate(ends)}, [query])
     detector.submit()
-    answer = detector.on_device()
+    answer = detector.on_device(query)
     arrays = [answer.status, answer.edges, *(column for table in answer.lists for column in table.values())]
     if isinstance(query, nm.Earliest):
         arrays.append(answer.earliest)
@@ -73,7 +73,7 @@ class Liar(np.ndarray):
 def test_an_array_is_read_where_it_lies():
     liar = V.copy().view(Liar)
     assert liar.__array_interface__["data"][0] == 64
-    told = nm.Detector(nm.Body(V, F), nm.Near(1), CPU).frame({0: liar})
+    told = nm.Detector(nm.Body(V, F), device=CPU).step({0: liar}, nm.Near(1))
     assert told.hash == nm.near(V, F, 1, device=CPU).hash
 
 
@@ -83,7 +83,7 @@ def test_more_rows_than_a_mesh_may_have(kind):
     with pytest.raises(nm.InputError, match="10000000000000 vertices"):
         nm.Body(many, F)
     with pytest.raises(nm.InputError, match="10000000000000 vertices, but .* has 6"):
-        nm.Detector(nm.Body(V, F), nm.Near(1), CPU).frame({0: many})
+        nm.Detector(nm.Body(V, F), device=CPU).update({0: many})
     if kind == "i4":
         with pytest.raises(nm.InputError, match="10000000000000 triangles"):
             nm.Body(V, many)
@@ -112,9 +112,9 @@ class ByInterface:
 
 
 def test_strides_between_numbers_are_refused():
-    asked = nm.Detector(nm.Body(V, F), nm.Near(1), CPU)
+    detector = nm.Detector(nm.Body(V, F), device=CPU)
     with pytest.raises(nm.InvalidArgumentError, match="a stride of 13 bytes between numbers of 4"):
-        asked.frame({0: ByInterface(strides=(13, 4))})
+        detector.update({0: ByInterface(strides=(13, 4))})
     for whole in [None, (16, 4), (2**62, 4)]:
-        with pytest.raises(nm.InvalidArgumentError, match="on a GPU for a detector on the CPU"):
-            asked.frame({0: ByInterface(strides=whole)})
+        with pytest.raises(nm.InvalidArgumentError, match="on a GPU, and the detector is on the CPU"):
+            detector.update({0: ByInterface(strides=whole)})

@@ -56,8 +56,8 @@ def test_one_liners_take_tensors_of_another_gpu():
 def test_a_thousand_frames_without_a_copy_of_positions(stream):
     t0, t1, faces = draped(40)
     body = nm.Body(t0, faces)
-    detector = nm.Detector(body, nm.Continuous(), nm.Device(stream=stream))
-    judge = nm.Detector(body, nm.Continuous(), nm.Device("cpu"))
+    detector, judge = (nm.Detector(body, device=device) for device in (nm.Device(stream=stream), nm.Device("cpu")))
+    every = nm.Continuous()
     here, there = (torch.from_numpy(t0).cuda() for _ in range(2))
     far = torch.from_numpy(t1).cuda()
     generator = torch.Generator(device="cuda").manual_seed(1)
@@ -69,23 +69,23 @@ def test_a_thousand_frames_without_a_copy_of_positions(stream):
         there.lerp_(far, part).add_(torch.randn(there.shape, device="cuda", generator=generator) * 2e-3)
 
     step()
-    detector.prepare({0: (here, there)})
+    detector.prepare({0: (here, there)}, [every])
     counted, contacts, compared = 0, torch.zeros((), dtype=torch.int64, device="cuda"), 0
     status = None
     for frame in range(1000):
         step()
         if not detector.is_prepared:
-            detector.prepare({0: (here, there)})
+            detector.prepare({0: (here, there)}, [every])
             status = None
         detector.submit()
         if status is None:
-            status = torch.from_dlpack(detector.on_device().status)
+            status = torch.from_dlpack(detector.on_device(every).status)
         # Counted on the device, by a kernel behind the submission.
         contacts += status[:2].sum()
         if frame % 25 == 0:
             ends = [end.cpu().numpy() for end in (here, there)]
             short = int(status[2])
-            found, wanted = detector.collect(), judge.frame({0: tuple(ends)})
+            found, wanted = detector.collect(every), judge.step({0: tuple(ends)}, every)
             assert found.hash == wanted.hash and len(found) == len(wanted)
             assert short or int(status[:2].sum()) == len(found)
             compared += len(found)
@@ -97,15 +97,15 @@ def test_a_thousand_frames_without_a_copy_of_positions(stream):
 
 def test_frames_move_no_positions_through_the_host(stream):
     t0, t1, faces = draped(100)
-    detector = nm.Detector(nm.Body(t0, faces), nm.Continuous(), nm.Device(stream=stream))
+    detector, every = nm.Detector(nm.Body(t0, faces), device=nm.Device(stream=stream)), nm.Continuous()
     ends = tuple(torch.from_numpy(end).cuda() for end in (t0, t1))
-    wanted = detector.frame({0: (t0, t1)}).hash
-    told = lambda: detector.plan()["transfers"]
+    wanted = detector.step({0: (t0, t1)}, every).hash
+    told = lambda: detector.plan(every)["transfers"]
     for _ in range(3):
-        assert detector.frame({0: (t0, t1)}).hash == wanted
+        assert detector.step({0: (t0, t1)}, every).hash == wanted
     from_host = told()
     for _ in range(3):
-        assert detector.frame({0: ends}).hash == wanted
+        assert detector.step({0: ends}, every).hash == wanted
     from_device = told()
     total = lambda rows: sum(row["to_device"]["bytes"] for row in rows)
     print(f"bytes to the device a frame: {total(from_host)} from the host, {total(from_device)} of tensors")
@@ -115,11 +115,11 @@ def test_frames_move_no_positions_through_the_host(stream):
 def test_a_graph_of_torch(stream):
     t0, t1, faces = draped(40)
     body = nm.Body(t0, faces)
-    detector = nm.Detector(body, nm.Continuous(), nm.Device(stream=stream))
-    judge = nm.Detector(body, nm.Continuous(), nm.Device("cpu"))
+    detector, judge = (nm.Detector(body, device=device) for device in (nm.Device(stream=stream), nm.Device("cpu")))
+    every = nm.Continuous()
     here, there, far = (torch.from_numpy(end).cuda() for end in (t0, t0, t1))
-    detector.prepare({0: (here, far)})
-    detector.prepare({0: (here, there)})
+    detector.prepare({0: (here, far)}, [every])
+    detector.prepare({0: (here, there)}, [every])
 
     def step():
         here.copy_(there)
@@ -129,7 +129,7 @@ def test_a_graph_of_torch(stream):
     graph = None
     for frame in range(40):
         if not detector.is_prepared:
-            detector.prepare({0: (here, there)})
+            detector.prepare({0: (here, there)}, [every])
             graph = None
         if graph is None:
             stream.synchronize()
@@ -138,27 +138,29 @@ def test_a_graph_of_torch(stream):
                 step()
                 detector.submit()
         graph.replay()
-        wanted = judge.frame({0: (here.cpu().numpy(), there.cpu().numpy())})
-        assert detector.collect().hash == wanted.hash
+        wanted = judge.step({0: (here.cpu().numpy(), there.cpu().numpy())}, every)
+        assert detector.collect(every).hash == wanted.hash
     assert len(wanted) > 0 or frame
 
 
 def test_any_layout_and_precision(stream):
     t0, t1, faces = draped(30)
     wanted = nm.near(t1, faces, 0.01, device=nm.Device("cpu"))
-    detector = nm.Detector(nm.Body(t0, faces), nm.Near(0.01), nm.Device(stream=stream))
+    detector, near = nm.Detector(nm.Body(t0, faces), device=nm.Device(stream=stream)), nm.Near(0.01)
     wide = torch.zeros((len(t1), 5), device="cuda")
     wide[:, 1:4] = torch.from_numpy(t1).cuda()
     for tensor in [torch.from_numpy(t1).cuda(), wide[:, 1:4], torch.from_numpy(t1).cuda().double()]:
-        assert detector.frame({0: tensor}).hash == wanted.hash
+        assert detector.step({0: tensor}, near).hash == wanted.hash
+        detector.update({0: tensor})
+        assert detector.query(near).hash == wanted.hash
     for wrong in [wide[:, 1:3], wide[:, 1:4].half(), torch.from_numpy(t1).cuda().T.contiguous().T]:
         with pytest.raises(nm.InvalidArgumentError):
-            detector.frame({0: wrong})
+            detector.update({0: wrong})
     with pytest.raises(nm.InputError, match="vertex 7"):
         wide[7, 1] = float("nan")
-        detector.frame({0: wide[:, 1:4]})
-    with pytest.raises(nm.InvalidArgumentError, match="on the CPU"):
-        nm.Detector(nm.Body(t0, faces), nm.Near(0.01), nm.Device("cpu")).frame({0: wide[:, 1:4]})
+        detector.step({0: wide[:, 1:4]}, near)
+    with pytest.raises(nm.InvalidArgumentError, match="the detector is on the CPU"):
+        nm.Detector(nm.Body(t0, faces), device=nm.Device("cpu")).update({0: wide[:, 1:4]})
 
 
 class ByInterface:
@@ -171,71 +173,71 @@ class ByInterface:
 
 def test_the_second_door(stream):
     t0, t1, faces = draped(30)
-    detector = nm.Detector(nm.Body(t0, faces), nm.Near(0.01), nm.Device(stream=stream))
+    detector, near = nm.Detector(nm.Body(t0, faces), device=nm.Device(stream=stream)), nm.Near(0.01)
     tensor = torch.from_numpy(t1).cuda()
-    wanted = detector.frame({0: t1}).hash
-    assert detector.frame({0: ByInterface(tensor)}).hash == wanted
-    assert detector.frame({0: ByInterface(tensor, stream=stream.cuda_stream)}).hash == wanted
-    with pytest.raises(nm.InvalidArgumentError, match="of stream 1"):
-        detector.frame({0: ByInterface(tensor, stream=1)})
+    wanted = detector.step({0: t1}, near).hash
+    assert detector.step({0: ByInterface(tensor)}, near).hash == wanted
+    assert detector.step({0: ByInterface(tensor, stream=stream.cuda_stream)}, near).hash == wanted
+    with pytest.raises(nm.InvalidArgumentError, match="are of stream 1"):
+        detector.update({0: ByInterface(tensor, stream=1)})
 
 
 def test_what_is_taken_back(stream):
     t0, _, faces = draped(30)
-    detector = nm.Detector(nm.Body(t0, faces), nm.Near(0.03), nm.Device(stream=stream))
+    detector, near = nm.Detector(nm.Body(t0, faces), device=nm.Device(stream=stream)), nm.Near(0.03)
     here = torch.from_numpy(t0).cuda()
-    detector.prepare({0: here})
+    detector.prepare({0: here}, [near])
     detector.submit()
-    answer = detector.on_device()
+    answer = detector.on_device(near)
     columns = {name: torch.from_dlpack(array) for name, array in answer.lists[0].items()}
     other = torch.cuda.Stream()
     with torch.cuda.stream(other):
         count = int(torch.from_dlpack(answer.status)[:2].sum())
-    found = detector.collect()
-    assert count == len(found) > 0 and columns["indices"].shape[1] == 2
+    found = detector.collect(near)
+    assert count == len(found) > 0 and columns["feature_a"].ndim == columns["feature_b"].ndim == 1
     if answer.is_ordered:
-        assert np.array_equal(columns["indices"][:count].cpu().numpy(), found.indices)
-        assert np.array_equal(columns["squared_distances"][:count].cpu().numpy(), found.squared_distances)
+        for name in ["feature_a", "feature_b", "squared_distances"]:
+            assert np.array_equal(columns[name][:count].cpu().numpy(), getattr(found, name))
     # The detector lives as long as what shows its memory.
-    kept = weak = columns["indices"]
+    kept = weak = columns["feature_a"]
     del detector, answer
     gc.collect()
-    assert np.array_equal(kept[:count].cpu().numpy(), found.indices) and weak is kept
+    assert np.array_equal(kept[:count].cpu().numpy(), found.feature_a) and weak is kept
 
 
 def test_poses_of_tensors(stream):
     vertices, faces = soup(80, 4, 0.5)
-    scene = nm.Scene(nm.Body(vertices, faces, kind="static"), nm.Body(vertices, faces, kind="rigid"))
+    scene = nm.Scene(nm.Body(vertices, faces, kind="fixed"), nm.Body(vertices, faces, kind="rigid"))
     turn, move = [0.0, 0.0, np.sin(0.1), np.cos(0.1)], [0.1, 0.2, 0.3]
-    wanted = nm.Detector(scene, nm.Discrete(), nm.Device("cpu")).frame({1: nm.Pose(turn, move)})
-    detector = nm.Detector(scene, nm.Discrete(), nm.Device(stream=stream))
+    wanted = nm.Detector(scene, device=nm.Device("cpu")).step({1: nm.Pose(turn, move)}, nm.Discrete())
+    detector = nm.Detector(scene, device=nm.Device(stream=stream))
     pose = nm.Pose(*(torch.tensor(x, dtype=torch.float64, device="cuda") for x in (turn, move)))
-    assert detector.frame({1: pose}).hash == wanted.hash and len(wanted) > 5
+    assert detector.step({1: pose}, nm.Discrete()).hash == wanted.hash and len(wanted) > 5
 
 
 def test_a_pose_is_one_row(stream):
     vertices, faces = soup(10, 4, 0.5)
-    scene = nm.Scene(nm.Body(vertices, faces, kind="static"), nm.Body(vertices, faces, kind="rigid"))
-    detector = nm.Detector(scene, nm.Discrete(), nm.Device(stream=stream))
+    scene = nm.Scene(nm.Body(vertices, faces, kind="fixed"), nm.Body(vertices, faces, kind="rigid"))
+    detector = nm.Detector(scene, device=nm.Device(stream=stream))
     turn, move = torch.tensor([[0.0, 0, 0, 1]], device="cuda"), torch.zeros((1, 3), device="cuda")
-    detector.frame({1: nm.Pose(turn, move)})
+    detector.step({1: nm.Pose(turn, move)}, nm.Discrete())
     for rows in [0, 2]:
         with pytest.raises(nm.InvalidArgumentError, match=f"a rotation of {rows} rows"):
-            detector.frame({1: nm.Pose(turn.expand(rows, 4), move)})
+            detector.update({1: nm.Pose(turn.expand(rows, 4), move)})
         with pytest.raises(nm.InvalidArgumentError, match=f"a translation of {rows} rows"):
-            detector.frame({1: nm.Pose(turn, move.expand(rows, 3))})
+            detector.update({1: nm.Pose(turn, move.expand(rows, 3))})
 
 
 def test_an_answer_that_has_moved_is_not_shown(stream):
     t0, _, faces = draped(10)
-    detector = nm.Detector(nm.Body(t0, faces), nm.Near(0.02), nm.Device(stream=stream))
-    detector.prepare({0: torch.from_numpy(t0).cuda()})
+    detector, near = nm.Detector(nm.Body(t0, faces), device=nm.Device(stream=stream)), nm.Near(0.02)
+    detector.prepare({0: torch.from_numpy(t0).cuda()}, [near])
     detector.submit()
-    status = detector.on_device().status
+    status = detector.on_device(near).status
     assert status.__cuda_array_interface__["data"][1] is False
-    assert torch.as_tensor(status, device="cuda").shape == (4,)
-    detector.frame({0: t0})
-    with pytest.raises(nm.InvalidArgumentError, match="asked anew"):
+    assert torch.as_tensor(status, device="cuda").shape == (5,)
+    detector.update({0: t0})
+    with pytest.raises(nm.InvalidArgumentError, match="the answer on the device is gone"):
         status.__cuda_array_interface__
 
 
@@ -244,15 +246,15 @@ def test_arrays_of_cupy(stream):
     t0, t1, faces = draped(30)
     wanted = nm.contacts(t0, t1, faces, device=nm.Device("cpu"))
     with cupy.cuda.ExternalStream(stream.cuda_stream) as own:
-        detector = nm.Detector(nm.Body(t0, faces), nm.Continuous(), nm.Device(stream=own))
+        detector, every = nm.Detector(nm.Body(t0, faces), device=nm.Device(stream=own)), nm.Continuous()
         ends = tuple(cupy.asarray(end) for end in (t0, t1))
-        assert detector.frame({0: ends}).hash == wanted.hash
-        detector.prepare({0: ends})
+        assert detector.step({0: ends}, every).hash == wanted.hash
+        detector.prepare({0: ends}, [every])
         detector.submit()
-        answer = detector.on_device()
+        answer = detector.on_device(every)
         by_dlpack, by_interface = cupy.from_dlpack(answer.status), cupy.asarray(answer.status)
         assert by_dlpack.tolist() == by_interface.tolist() and sum(by_dlpack.tolist()[:2]) == len(wanted)
-        detector.collect()
+        detector.collect(every)
 
 
 def test_frames_beside_a_graph_that_another_thread_records(stream):
@@ -266,8 +268,8 @@ def test_frames_beside_a_graph_that_another_thread_records(stream):
         recording.wait()
         try:
             # Opened, made and asked while the other records.
-            detector = nm.Detector(nm.Body(t0, faces), nm.Continuous(), nm.Device(gpu=0))
-            told.extend(detector.frame({0: (t0, t1)}).hash for _ in range(3))
+            detector = nm.Detector(nm.Body(t0, faces), device=nm.Device(gpu=0))
+            told.extend(detector.step({0: (t0, t1)}, nm.Continuous()).hash for _ in range(3))
         finally:
             asked.set()
 
@@ -289,21 +291,51 @@ def test_frames_beside_a_graph_that_another_thread_records(stream):
 
 def test_what_a_refused_frame_left_behind_is_not_answered_of(stream):
     t0, t1, faces = draped(20)
-    scene = nm.Scene(nm.Body(t0, faces, self_collision=True))
+    scene = nm.Scene(nm.Body(t0, faces))
     other = scene.add(nm.Body(t1 + 0.01, faces))
-    detector = nm.Detector(scene, nm.Continuous(), nm.Device(stream=stream))
-    judge = nm.Detector(scene, nm.Continuous(), nm.Device("cpu"))
+    detector, judge = (nm.Detector(scene, device=device) for device in (nm.Device(stream=stream), nm.Device("cpu")))
+    every = nm.Continuous()
     here, there = (torch.from_numpy(array).cuda() for array in (t0, t1))
     bad = there.clone()
     bad[7, 1] = float("nan")
     with pytest.raises(nm.InputError, match="vertex 7 has y"):
-        detector.frame({0: (here, bad)})
-    for asked in [lambda: detector.frame(), lambda: detector.frame({other: t1}), detector.detect]:
+        detector.step({0: (here, bad)}, every)
+    for asked in [lambda: detector.step({}, every), lambda: detector.step({other: (t1, t1)}, every), detector.continuous]:
         with pytest.raises(nm.InvalidArgumentError, match="name it again"):
             asked()
-    wanted = judge.frame({0: (t0, t1), other: t1})
-    found = detector.frame({0: (here, there), other: t1})
+    wanted = judge.step({0: (t0, t1), other: t1}, every)
+    found = detector.step({0: (here, there), other: t1}, every)
     assert found.hash == wanted.hash and len(found) > 100
+
+
+def test_arrays_of_an_update_are_kept_until_they_are_read(stream):
+    t0, t1, faces = draped(40)
+    body, near = nm.Body(t0, faces), nm.Near(0.01)
+    wanted = nm.Detector(body, device=nm.Device("cpu")).step({0: t1}, near)
+    detector = nm.Detector(body, device=nm.Device(gpu=0))
+    detector.near(0.01)
+    for _ in range(20):
+        # Of the stream that is current, which is not the detector's.
+        detector.update({0: torch.from_numpy(t1).cuda()})
+        spoiled = [torch.full(t1.shape, float("nan"), device="cuda") for _ in range(4)]
+        assert detector.query(near).hash == wanted.hash
+        del spoiled
+
+
+def test_three_queries_of_one_submission(stream):
+    t0, t1, faces = draped(40)
+    body, queries = nm.Body(t0, faces), [nm.Near(0.01), nm.Earliest(), nm.Discrete()]
+    detector, judge = (nm.Detector(body, device=device) for device in (nm.Device(stream=stream), nm.Device("cpu")))
+    here, there = (torch.from_numpy(end).cuda() for end in (t0, t1))
+    detector.prepare({0: (here, there)}, queries)
+    for _ in range(5):
+        here.lerp_(there, 0.1)
+        if not detector.is_prepared:
+            detector.prepare({0: (here, there)}, queries)
+        detector.submit()
+        judge.update({0: (here.cpu().numpy(), there.cpu().numpy())})
+        for query in queries:
+            assert detector.collect(query).hash == judge.query(query).hash
 
 
 def test_the_graph_of_forces_of_the_book(capsys):

@@ -44,18 +44,18 @@ def interrupted(call):
 @pytest.mark.parametrize("threads", [1, 2])
 def test_a_signal_ends_a_frame(threads):
     v, f = LONG
-    detector = nm.Detector(nm.Body(v, f), nm.Continuous(), nm.Device("cpu", threads=threads))
-    interrupted(lambda: detector.frame({0: (v, v + np.float32(0.25))}))
+    detector = nm.Detector(nm.Body(v, f), device=nm.Device("cpu", threads=threads))
+    interrupted(lambda: detector.step({0: (v, v + np.float32(0.25))}, nm.Continuous()))
     # Where that frame said: the same handle, another answer in time.
     detector.replace(0, nm.Body(V, F))
-    assert len(detector.detect()) == len(nm.Detector(nm.Body(V, F), nm.Continuous(), detector.device).detect())
+    assert len(detector.continuous()) == len(nm.Detector(nm.Body(V, F), device=detector.device).continuous())
 
 
 @pytest.mark.parametrize(
     "call",
     [
         lambda v, f: nm.contacts(v, v + np.float32(0.25), f),
-        lambda v, f: nm.time_of_impact(v, v + np.float32(0.25), f, separation=0.5, tolerance=1e-6),
+        lambda v, f: nm.time_of_impact(v, v + np.float32(0.25), f, min_separation=0.5, tolerance=1e-6),
     ],
 )
 def test_a_signal_ends_a_question_in_one_line(call):
@@ -68,14 +68,14 @@ def test_a_signal_ends_a_question_in_one_line(call):
 
 def test_a_signal_ends_who_waits_for_the_device():
     device = nm.Device("cpu", threads=1)
-    waiting = nm.Detector(nm.Body(V, F), nm.Discrete(), device)
-    busy = nm.Detector(nm.Body(*soup(3000, 1, 0.5)), nm.Continuous(), device)
+    waiting = nm.Detector(nm.Body(V, F), device=device)
+    busy = nm.Detector(nm.Body(*soup(3000, 1, 0.5)), device=device)
     stop, errors = threading.Event(), []
 
     def frames():
         try:
             while not stop.is_set():
-                busy.frame()
+                busy.step({}, nm.Continuous())
         except BaseException as error:  # noqa: BLE001
             errors.append(error)
 
@@ -85,41 +85,41 @@ def test_a_signal_ends_who_waits_for_the_device():
 
         def ask():
             while True:
-                waiting.detect()
-                busy.detect()
+                waiting.discrete()
+                busy.continuous()
 
         interrupted(ask)
     finally:
         stop.set()
         thread.join()
     assert not errors, "signals are for the main thread"
-    assert len(waiting.detect()) == 1
+    assert len(waiting.discrete()) == 1
 
 
 def test_another_thread_ends_a_frame():
-    detector = nm.Detector(nm.Body(*soup(500, 1)), nm.Discrete(), nm.Device("cpu"))
-    want = detector.detect()
+    detector = nm.Detector(nm.Body(*soup(500, 1)), device=nm.Device("cpu"))
+    want = detector.discrete()
     timer = threading.Timer(0.3, detector.interrupt)
     timer.start()
     with pytest.raises(nm.Interrupted, match="can be used again"):
         while True:
-            detector.detect()
+            detector.discrete()
     timer.join()
-    assert np.array_equal(detector.detect().indices, want.indices)
+    assert np.array_equal(detector.discrete().triangles, want.triangles)
     # None runs: the next one ends.
     detector.interrupt()
     with pytest.raises(nm.Interrupted):
-        detector.detect()
-    assert np.array_equal(detector.detect().indices, want.indices)
+        detector.discrete()
+    assert np.array_equal(detector.discrete().triangles, want.triangles)
 
 
 def test_a_frame_on_another_thread_is_ended_by_the_handle():
-    detector = nm.Detector(nm.Body(*LONG), nm.Continuous(), nm.Device("cpu"))
+    detector = nm.Detector(nm.Body(*LONG), device=nm.Device("cpu"))
     raised = []
 
     def frame():
         try:
-            detector.frame({0: (LONG[0], LONG[0] + np.float32(0.25))})
+            detector.step({0: (LONG[0], LONG[0] + np.float32(0.25))}, nm.Continuous())
         except nm.Interrupted as error:
             raised.append(error)
 
@@ -135,10 +135,10 @@ def test_a_frame_on_another_thread_is_ended_by_the_handle():
 
 
 def test_a_refused_frame_leaves_nothing_locked():
-    detector = nm.Detector(nm.Body(*soup(20_000, 1)), nm.Near(50.0), nm.Device("cpu"))
+    detector = nm.Detector(nm.Body(*soup(20_000, 1)), device=nm.Device("cpu"))
     for _ in range(2):
         with pytest.raises(nm.OutOfMemory, match="at least 2999850000 pairs.* use a smaller distance"):
-            detector.detect()
+            detector.near(50.0)
     ended = []
     thread = threading.Thread(target=lambda: ended.append(repr(detector)))
     thread.start()

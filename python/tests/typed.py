@@ -1,4 +1,4 @@
-"""What mypy is shown: calls as a user writes them, with the types that they have."""
+"""Calls as a user writes them, with their types, for mypy. It must find the faults too."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,8 +8,20 @@ import nearmiss as nm
 vertices, faces = nm.read_mesh("mesh.ply")
 pairs: NDArray[np.uint32] = nm.self_intersections(vertices, faces)
 toi: float | None = nm.time_of_impact(vertices, vertices, faces)
-found: nm.Contacts = nm.near(vertices, faces, 0.1)
-detector = nm.Detector(nm.Scene(nm.Body(vertices, faces, kind="rigid")), nm.Continuous(tolerance=1e-6), nm.Device("cpu"))
-found = detector.frame({0: (nm.Pose(), nm.Pose(translation=(0, 0, 1)))})
+near: nm.NearPairs = nm.near(vertices, faces, 0.1)
+found: nm.Contacts = nm.contacts(vertices, vertices, faces)
+detector = nm.Detector(nm.Scene(nm.Body(vertices, faces, kind="rigid")), device=nm.Device("cpu"))
+detector.update({0: (nm.Pose(), nm.Pose(translation=(0, 0, 1)))})
+first: nm.FirstContact = detector.earliest(min_separation=1e-3)
+triangles: nm.TrianglePairs = detector.query(nm.Discrete())
+nearest: nm.NearestTriangles = detector.step({0: nm.Pose()}, nm.Distance())
+slow: nm.Continuous = nm.research.configure(nm.Continuous(tolerance=1e-6), solver="cubic-f64")
+found = detector.query(slow)
+near = detector.collect(nm.Near(0.1))
+detector.prepare({0: nm.Pose()}, [nm.Near(0.1), nm.Earliest()])
 times: NDArray[np.float64] = found.toi
+body = nm.Body(vertices, faces, kind="soft")  # type: ignore[arg-type]
+wrong: nm.NearPairs = detector.query(nm.Earliest())  # type: ignore[assignment]
+nm.research.configure(nm.Discrete(), broad_phase="octree")  # type: ignore[arg-type]
+nearest.distances  # type: ignore[attr-defined]
 bad: int = found.hash  # type: ignore[assignment]

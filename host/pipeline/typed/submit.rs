@@ -71,6 +71,14 @@ pub trait Submits {
     fn poses(&self) -> Result<Vec<Pose>, Error>;
 }
 
+/// Nothing is prepared that could be submitted.
+pub fn not_prepared() -> Error {
+    Error::InvalidArgument {
+        what: "a submission that is not prepared".into(),
+        advice: "call `prepare` first, and again after every other call that changes the detector".into(),
+    }
+}
+
 impl<R: Precision> Submits for TypedPipeline<R> {
     fn poses(&self) -> Result<Vec<Pose>, Error> {
         self.scene.vertices.poses()
@@ -118,10 +126,7 @@ impl<R: Precision> Submits for TypedPipeline<R> {
 
     fn submit(&mut self) -> Result<(), Error> {
         let submission = self.submission.as_mut().map(|submission| std::mem::take(&mut submission.replay));
-        let mut replay = submission.ok_or_else(|| Error::InvalidArgument {
-            what: "the submission is not prepared".into(),
-            advice: "call `prepare` first, and again after every call that changes the detector".into(),
-        })?;
+        let mut replay = submission.ok_or_else(not_prepared)?;
         let device = self.scene.device.clone();
         // SAFETY: it launches and clears; it keeps the memory that it holds.
         let done = unsafe { replay.run(&device, |_| self.enqueue()) };

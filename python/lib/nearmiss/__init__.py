@@ -1,18 +1,31 @@
-"""nearmiss: exact collision detection for deformable triangle meshes, on the CPU and on NVIDIA GPUs.
+"""Exact collision detection for deforming triangle meshes, on the CPU and on NVIDIA GPUs.
 
-    import nearmiss
-    pairs = nearmiss.self_intersections(vertices, faces)      # (k, 2): triangles that cross, exactly
-    close = nearmiss.near(vertices, faces, distance=0.01)     # what is within a hundredth, and where
-    toi = nearmiss.time_of_impact(t0, t1, faces)              # how far a step may go, never late
+Functions for one mesh:
 
-What is asked often is asked of a Detector: a Scene of Body objects on a Device, and a query (Discrete, Continuous, Earliest,
-Near, Distance). No contact is missed; where a solver cannot tell it says so, and where something ends it raises.
-Start processes by spawn: one that was forked after the first call has no threads to compute with, and raises InvalidArgumentError.
+    self_intersections(vertices, faces)    triangles that cross: (k, 2) indices
+    near(vertices, faces, distance)        features within a distance, and their nearest points
+    contacts(t0, t1, faces)                features that meet in a step, with certified times
+    time_of_impact(t0, t1, faces)          safe part of a step, never late
+    read_mesh(path)                        vertices and faces of a PLY or OBJ file
+
+A detector keeps a scene on a device and answers any number of queries, with one upload of positions:
+
+    detector = nearmiss.Detector(scene)                        # or Detector(body)
+    detector.update({cloth: (x0, x1), ball: pose})
+    pairs = detector.near(0.01)                                # NearPairs
+    first = detector.earliest(min_separation=1e-3)             # FirstContact
+    triangles = detector.discrete()                            # TrianglePairs
+    every = detector.continuous()                              # Contacts
+    nearest = detector.distance()                              # NearestTriangles
+    answer = detector.step({cloth: (x1, x2)}, nearmiss.Near(0.01))
+
+No contact is missed. Pairs that a solver cannot decide are reported as undecided, and limits of an answer as caveats. After
+os.fork() a child process raises InvalidArgumentError: use the "spawn" start method.
 """
 
-from enum import IntEnum
-
+from . import research
 from ._native import (
+    Answer,
     Body,
     Contacts,
     Continuous,
@@ -23,61 +36,35 @@ from ._native import (
     Discrete,
     Distance,
     Earliest,
+    FirstContact,
     Geometry,
     Near,
+    NearestTriangles,
+    NearPairs,
     Pose,
     Query,
     Scene,
+    TrianglePairs,
     __version__,
     read_mesh,
 )
 from .errors import (
     Bug,
-    InvalidArgumentError,
     DeviceError,
     InputError,
     Interrupted,
+    InvalidArgumentError,
     MeshWarning,
     NearmissError,
     OutOfMemory,
 )
+from .kinds import Closest, Kind, Status
 from .shortcuts import contacts, near, self_intersections, time_of_impact
 
-
-class Kind(IntEnum):
-    """Which features meet: the numbers in Contacts.kind."""
-
-    VERTEX_FACE = 0
-    """A vertex of the first body, a face of the second."""
-    FACE_VERTEX = 1
-    """A face of the first body, a vertex of the second."""
-    EDGE_EDGE = 2
-
-
-class Status(IntEnum):
-    """How sure an answer is: the numbers in Contacts.status."""
-
-    CONTACT = 0
-    """A solver that can be wrong says so."""
-    CERTIFIED = 1
-    """They meet, proven, first in [toi, toi_upper]."""
-    UNDECIDED = 2
-    """They come nearer than the tolerance; if they meet, not before toi. Proven as well."""
-
-
-class Closest(IntEnum):
-    """What is nearest of two features: the numbers in Contacts.closest."""
-
-    VERTEX_FACE = 0
-    VERTEX_EDGE = 1
-    VERTEX_VERTEX = 2
-    EDGE_EDGE = 3
-
-
 __all__ = [
+    "Answer",
     "Body",
     "Bug",
-    "InvalidArgumentError",
     "Closest",
     "Contacts",
     "Continuous",
@@ -89,22 +76,28 @@ __all__ = [
     "Discrete",
     "Distance",
     "Earliest",
+    "FirstContact",
     "Geometry",
     "InputError",
     "Interrupted",
+    "InvalidArgumentError",
     "Kind",
     "MeshWarning",
     "Near",
+    "NearPairs",
+    "NearestTriangles",
     "NearmissError",
     "OutOfMemory",
     "Pose",
     "Query",
     "Scene",
     "Status",
+    "TrianglePairs",
     "__version__",
     "contacts",
     "near",
     "read_mesh",
+    "research",
     "self_intersections",
     "time_of_impact",
 ]

@@ -1,5 +1,5 @@
 from os import PathLike
-from typing import Any, Literal, Mapping, Tuple, Union
+from typing import Any, Generic, Iterable, Literal, Mapping, Tuple, TypeVar, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,12 +8,72 @@ __version__: str
 
 Array = Any
 """What numpy can read, or an array of a GPU with DLPack or __cuda_array_interface__."""
-Input = Union[Array, Tuple[Array, Array], "Pose", Tuple["Pose", "Pose"]]
+Motion = Union[Array, Tuple[Array, Array], "Pose", Tuple["Pose", "Pose"]]
+"""Positions or a pose, or a tuple of two for the start and the end of a step."""
 
-def is_on_gpu(object: Any) -> bool: ...
-def read_mesh(path: Union[str, PathLike[str]], *, strict: bool = False) -> tuple[NDArray[Any], NDArray[np.uint32]]: ...
+_A = TypeVar("_A", bound="Answer", covariant=True)
+_Q = TypeVar("_Q", bound="Query[Any]")
+
+def is_on_gpu(object: Any) -> bool:
+    """Return whether an array is in the memory of an NVIDIA GPU."""
+
+def read_mesh(path: Union[str, PathLike[str]], *, strict: bool = False) -> tuple[NDArray[Any], NDArray[np.uint32]]:
+    """Read a PLY or OBJ file, also with .gz appended.
+
+    - `path`: the file.
+    - `strict`: raise InputError for each part of the file that would be skipped or cut otherwise.
+
+    Returns (vertices, faces): (n, 3) float32 or float64 as in the file, and (m, 3) uint32. Polygons
+    are cut into triangles. A MeshWarning counts parts that are skipped, left out (faces of one or two
+    corners) or cut as a fan (faces that cross themselves).
+
+    Raises InputError for a file that is no mesh, with the line or element.
+    """
+
+def configure(
+    query: _Q,
+    *,
+    solver: Literal[
+        "exact", "moller", "certified", "certified-f32", "certified-f64", "cubic-f64", "cubic-f32", "bounded"
+    ]
+    | None = None,
+    broad_phase: Literal["tree", "tiles"] | None = None,
+    bounding_volume: Literal["aabb", "obb", "obb-child", "linear"] | None = None,
+    order: Literal["hilbert", "runs", "median"] | None = None,
+    rebuild: Literal["auto", "manual"] | None = None,
+) -> _Q:
+    """Return the same query with other choices of the laboratory.
+
+    No choice except `solver` changes an answer. None keeps the choice of `query`.
+
+    - `query`: any query.
+    - `solver`: test of a pair. Discrete: "exact", or "moller", which can miss and invent contacts.
+      Continuous and Earliest: "certified", "certified-f32", "certified-f64", or "cubic-f64" and
+      "cubic-f32", which can miss contacts and take neither a tolerance nor a minimum separation.
+    - `broad_phase`: "tiles" or "tree".
+    - `bounding_volume`: volume of a triangle, "aabb" or "linear"; "obb" of trees.
+    - `order`: order of triangles in tiles.
+    - `rebuild`: "auto" rebuilds tiles and trees when their boxes have become loose; "manual" does
+      so by Detector.rebuild alone.
+
+    Raises InvalidArgumentError for choices that do not exist or exclude each other.
+    """
 
 class Device:
+    """Machine that runs queries: the CPU, or an NVIDIA GPU.
+
+    - `backend`: "auto" (a GPU if there is one, else the CPU), "cpu" or "cuda".
+    - `threads`: threads of the CPU, 1 to 1024, at most one a processor. Default: all.
+    - `gpu`: number of a GPU. It gets a stream of its own.
+    - `stream`: your stream, on the GPU that this thread is bound to: a stream of torch or cupy, an
+      object with __cuda_stream__, or a handle (0: the default stream). All work goes there. It must
+      outlive the device.
+    - `memory_limit`: most bytes of device memory to take, at least 1. Default: all there are.
+
+    Raises DeviceError if there is no such machine. Detectors of any threads may share a device: they
+    take turns. For work side by side open two.
+    """
+
     def __new__(
         cls,
         backend: Literal["auto", "cpu", "cuda"] = "auto",
@@ -21,168 +81,464 @@ class Device:
         threads: int | None = None,
         gpu: int | None = None,
         stream: Any = None,
+        memory_limit: int | None = None,
     ) -> Device: ...
+
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """Name of the machine."""
+
     @property
-    def backend(self) -> Literal["cpu", "cuda"]: ...
+    def backend(self) -> Literal["cpu", "cuda"]:
+        """Kind of the machine: "cpu" or "cuda"."""
+
     @property
-    def gpu(self) -> int | None: ...
+    def gpu(self) -> int | None:
+        """Number of the GPU; None for a CPU."""
+
     @property
-    def stream(self) -> int | None: ...
+    def stream(self) -> int | None:
+        """Handle of the stream that all work goes to, 0 for the default one; None for a CPU."""
+
     @property
-    def bytes(self) -> tuple[int, int]: ...
+    def bytes(self) -> tuple[int, int]:
+        """Bytes of device memory held now, and the most held at once."""
+
+    @property
+    def allocations(self) -> int:
+        """Number of times that device memory was taken."""
+
+    @property
+    def uploaded(self) -> int:
+        """Bytes copied from the host to the device."""
 
 class Pose:
+    """Pose of a rigid body: rotation, then translation.
+
+    - `rotation`: unit quaternion (x, y, z, w), default (0, 0, 0, 1). Its length may differ from 1 by
+      1.2e-4 (2^-13); it is normalised.
+    - `translation`: (x, y, z) in the unit of the vertices, default (0, 0, 0).
+
+    A vertex v is placed at R v + t in float64, also of a mesh in float32. Both may be arrays of a
+    GPU, of 4 and 3 float32 or float64 numbers. Raises InputError for numbers that are no pose, and
+    InvalidArgumentError for other shapes; poses on a GPU are checked by the next query.
+    """
+
     def __new__(cls, rotation: Array = None, translation: Array = None) -> Pose: ...
+
     @property
-    def rotation(self) -> Array: ...
+    def rotation(self) -> Array:
+        """Rotation, as it was given."""
+
     @property
-    def translation(self) -> Array: ...
+    def translation(self) -> Array:
+        """Translation, as it was given."""
 
 class Body:
+    """Mesh that takes part in a scene: its way to move, and the bodies that it may meet.
+
+    - `vertices`: (n, 3) numbers, copied. float32 and float64 are kept, others become float64.
+    - `faces`: (m, 3) integers from 0, the vertices of each triangle, copied.
+    - `kind`: "deformable" (each vertex moves by itself), "rigid" (moves by a Pose) or "fixed" (never
+      moves; cheapest).
+    - `self_collision`: whether the body is tested against itself. Default: deformable bodies are,
+      rigid bodies are not. Fixed bodies never are: True raises InvalidArgumentError.
+    - `environment`: bodies of different environments never meet; None is in all of them.
+    - `group`, `mask`: 32 bits each. Two bodies meet if each is in a group of the other's mask. ~1
+      is all bits except the lowest.
+    - `name`: name of the body in messages.
+
+    Raises InputError for vertices that are not finite and for indices without a vertex.
+    """
+
     def __new__(
         cls,
         vertices: Array,
         faces: Array,
         *,
-        kind: Literal["deformable", "rigid", "static"] = "deformable",
+        kind: Literal["deformable", "rigid", "fixed"] = "deformable",
         self_collision: bool | None = None,
         environment: int | None = 0,
         group: int = 0xFFFFFFFF,
         mask: int = 0xFFFFFFFF,
         name: str = "a mesh",
     ) -> Body: ...
+
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """Name of the body in messages."""
+
     @property
-    def vertex_count(self) -> int: ...
+    def vertex_count(self) -> int:
+        """Number of vertices."""
+
     @property
-    def face_count(self) -> int: ...
+    def face_count(self) -> int:
+        """Number of triangles."""
 
 class Scene:
+    """Bodies, numbered from 0 in the order in which they are added.
+
+    - `bodies`: the first bodies.
+
+    A detector takes a copy. From then on, add, remove and replace bodies of the detector.
+    """
+
     def __new__(cls, *bodies: Body) -> Scene: ...
-    def add(self, body: Body) -> int: ...
-    def remove(self, body: int) -> None: ...
+
+    def add(self, body: Body) -> int:
+        """Add a body, and return its number."""
+
+    def remove(self, body: int) -> None:
+        """Remove the body with that number. The next body that is added may take its number."""
+
     @property
-    def bodies(self) -> list[int]: ...
+    def bodies(self) -> list[int]:
+        """Numbers of all bodies, ascending."""
+
     def __len__(self) -> int: ...
 
-class Query: ...
+class Query(Generic[_A]):
+    """Base class of all queries: Discrete, Continuous, Earliest, Near, Distance.
 
-class Discrete(Query):
-    def __new__(
-        cls,
-        *,
-        adjacent: bool = False,
-        solver: str = "exact",
-        broad: str | None = None,
-        order: str | None = None,
-        bv: str | None = None,
-        rebuild: str | None = None,
-    ) -> Discrete: ...
+    A query is a value: it can be compared, hashed, copied and pickled. Each class of queries has an
+    answer class of its own. Queries with other numbers use the same memory of a detector.
+    """
 
-class Continuous(Query):
+class Discrete(Query["TrianglePairs"]):
+    """Query for triangles that share a point at t = 0, by exact signs. Answer: TrianglePairs.
+
+    - `adjacent`: also test triangles with a common vertex, for points beyond that vertex or edge.
+    """
+
+    def __new__(cls, *, adjacent: bool = False) -> Discrete: ...
+
+class Continuous(Query["Contacts"]):
+    """Query for all contacts of a step, with certified times. Answer: Contacts.
+
+    Vertices move in straight lines from t = 0 to t = 1. Features with a common vertex are left
+    out.
+
+    - `tolerance`: accuracy of times, as a length, at least 0. Default: of two bodies the
+      smaller 1e-4 of the mean edge. A smaller one takes longer. None loses a contact.
+    - `min_separation`: minimum separation, a length of at least 0. Features that come this
+      near count as contacts. Default 0: touching.
+    - `max_iterations`: most iterations for a pair, at least 1. A pair that needs more is
+      reported as undecided. Default 4096.
+    - `assume_free`: skip the count of triangle pairs that cross at the start of the step.
+    """
+
     def __new__(
         cls,
         *,
         tolerance: float | None = None,
-        separation: float = 0.0,
-        budget: int | None = None,
+        min_separation: float = 0.0,
+        max_iterations: int | None = None,
         assume_free: bool = False,
-        solver: str = "certified",
-        broad: str | None = None,
-        order: str | None = None,
-        bv: str | None = None,
-        rebuild: str | None = None,
     ) -> Continuous: ...
 
-class Earliest(Query):
+class Earliest(Query["FirstContact"]):
+    """Query for the first contact of a step: how long a step is safe. Answer: FirstContact.
+
+    Vertices move in straight lines from t = 0 to t = 1. No contact is before the returned time.
+
+    - `tolerance`: accuracy of times, as a length, at least 0. Default: of two bodies the
+      smaller 1e-4 of the mean edge. A smaller one takes longer. None loses a contact.
+    - `min_separation`: minimum separation, a length of at least 0. Features that come this
+      near count as contacts. Default 0: touching.
+    - `max_iterations`: most iterations for a pair, at least 1. A pair that needs more is
+      reported as undecided. Default 4096.
+    - `assume_free`: skip the count of triangle pairs that cross at the start of the step.
+    """
+
     def __new__(
         cls,
         *,
         tolerance: float | None = None,
-        separation: float = 0.0,
-        budget: int | None = None,
+        min_separation: float = 0.0,
+        max_iterations: int | None = None,
         assume_free: bool = False,
-        solver: str = "certified",
-        broad: str | None = None,
-        order: str | None = None,
-        bv: str | None = None,
-        rebuild: str | None = None,
     ) -> Earliest: ...
 
-class Near(Query):
-    def __new__(
-        cls,
-        distance: float,
-        *,
-        broad: str | None = None,
-        order: str | None = None,
-        bv: str | None = None,
-        rebuild: str | None = None,
-    ) -> Near: ...
+class Near(Query["NearPairs"]):
+    """Query for features within a distance at t = 0. Answer: NearPairs.
 
-class Distance(Query):
+    - `distance`: a length above 0, in the unit of the vertices. No pair within it is missed.
+
+    A pair is a vertex and a face, or two edges. Features with a common vertex are left out.
+    """
+
+    def __new__(cls, distance: float) -> Near: ...
+
+class Distance(Query["NearestTriangles"]):
+    """Query for the distance of the nearest two bodies at t = 0. Answer: NearestTriangles.
+
+    The distance is 0 if and only if two bodies share a point. A body has no distance from itself.
+    """
+
     def __new__(cls) -> Distance: ...
 
-class Contacts:
+class Answer:
+    """Base class of all answers.
+
+    Rows are in canonical order, the same on every machine. Columns are read-only numpy arrays: copy
+    one before you write to it.
+    """
+
+    @property
+    def query(self) -> Query[Any]:
+        """Query of this answer."""
+
+    @property
+    def caveats(self) -> list[str]:
+        """Caveats, a sentence each: limits of this answer. Empty if there are none."""
+
+    @property
+    def candidates(self) -> int:
+        """Number of pairs that the narrow phase tested."""
+
+    @property
+    def hash(self) -> str:
+        """Hash of the answer, 16 hexadecimal digits. Equal answers have equal hashes on every machine."""
+
+class TrianglePairs(Answer):
+    """Answer of Discrete: triangles that share a point, a row a pair.
+
+    Rows ascend by the first triangle and its body, then by the second.
+    """
+
     def __len__(self) -> int: ...
+
     @property
-    def caveats(self) -> list[str]: ...
+    def bodies(self) -> NDArray[np.uint32]:
+        """(k, 2) uint32: bodies of both triangles, the smaller number first."""
+
     @property
-    def kind(self) -> NDArray[np.uint8]: ...
+    def triangles(self) -> NDArray[np.uint32]:
+        """(k, 2) uint32: both triangles, by their indices in their bodies."""
+
     @property
-    def bodies(self) -> NDArray[np.uint32]: ...
+    def is_free(self) -> bool:
+        """Whether no two triangles share a point."""
+
+class Contacts(Answer):
+    """Answer of Continuous: features that meet within the step, a row a pair.
+
+    A row is a vertex and a face, or two edges. Rows ascend by `kind`, then by feature a and its
+    body, then by feature b. An edge that already passes through a face at the start has no row: see
+    `starts_crossing`.
+    """
+
+    def __len__(self) -> int: ...
+
     @property
-    def indices(self) -> NDArray[np.uint32]: ...
+    def kind(self) -> NDArray[np.uint8]:
+        """(k,) uint8: which features meet, see Kind."""
+
     @property
-    def toi(self) -> NDArray[np.float64]: ...
+    def bodies(self) -> NDArray[np.uint32]:
+        """(k, 2) uint32: body of feature a, body of feature b."""
+
     @property
-    def toi_upper(self) -> NDArray[np.float64]: ...
+    def feature_a(self) -> NDArray[np.uint32]:
+        """(k,) uint32: the vertex, or the first edge, by its index in its body."""
+
     @property
-    def status(self) -> NDArray[np.uint8]: ...
+    def feature_b(self) -> NDArray[np.uint32]:
+        """(k,) uint32: the face, or the second edge, by its index in its body."""
+
     @property
-    def distances(self) -> NDArray[np.float64]: ...
+    def toi(self) -> NDArray[np.float64]:
+        """(k,) float64 in [0, 1]: lower bound of the time of impact. No contact is earlier."""
+
     @property
-    def squared_distances(self) -> NDArray[np.float64]: ...
+    def toi_upper(self) -> NDArray[np.float64]:
+        """(k,) float64 in [toi, 1]: upper bound of the time of impact. Certified pairs have met by it."""
+
     @property
-    def closest(self) -> NDArray[np.uint8]: ...
+    def status(self) -> NDArray[np.uint8]:
+        """(k,) uint8: certainty of the row, see Status."""
+
     @property
-    def weights(self) -> NDArray[np.float64]: ...
+    def earliest_toi(self) -> float | None:
+        """Smallest `toi`; None without a row."""
+
     @property
-    def points(self) -> NDArray[np.float64]: ...
+    def starts_crossing(self) -> int | None:
+        """Number of triangle pairs that share a point at the start; None with `assume_free`.
+
+        As many as Discrete lists there. Such a pair need not have a row.
+        """
+
     @property
-    def starts_crossing(self) -> int | None: ...
+    def is_free(self) -> bool:
+        """Whether the step is proven to be free: no row, and no triangles cross at the start."""
+
     @property
-    def is_free(self) -> bool: ...
+    def undecided(self) -> int:
+        """Number of rows whose status is undecided."""
+
+class FirstContact(Answer):
+    """Answer of Earliest: the first contact of the step."""
+
     @property
-    def earliest(self) -> float | None: ...
+    def toi(self) -> float | None:
+        """Time of the first contact, in [0, 1]; None if nothing meets. No contact is earlier.
+
+        Triangles that cross at the start need not have a time: see `is_free`.
+        """
+
     @property
-    def distance(self) -> float | None: ...
+    def is_undecided(self) -> bool:
+        """Whether the pair at `toi` is undecided: it comes within the tolerance, and may not meet."""
+
     @property
-    def candidates(self) -> int: ...
+    def starts_crossing(self) -> int | None:
+        """Number of triangle pairs that share a point at the start; None with `assume_free`."""
+
     @property
-    def undecided(self) -> int: ...
+    def is_free(self) -> bool:
+        """Whether the step is proven to be free: no contact, and no triangles cross at the start."""
+
+class NearPairs(Answer):
+    """Answer of Near: features within the distance, a row a pair.
+
+    A row is a vertex and a face, or two edges. Rows ascend by `kind`, then by feature a and its
+    body, then by feature b.
+    """
+
+    def __len__(self) -> int: ...
+
     @property
-    def hash(self) -> str: ...
+    def kind(self) -> NDArray[np.uint8]:
+        """(k,) uint8: which features are near, see Kind."""
+
+    @property
+    def bodies(self) -> NDArray[np.uint32]:
+        """(k, 2) uint32: body of feature a, body of feature b."""
+
+    @property
+    def feature_a(self) -> NDArray[np.uint32]:
+        """(k,) uint32: the vertex, or the first edge, by its index in its body."""
+
+    @property
+    def feature_b(self) -> NDArray[np.uint32]:
+        """(k,) uint32: the face, or the second edge, by its index in its body."""
+
+    @property
+    def distances(self) -> NDArray[np.float64]:
+        """(k,) float64: distances of the features, in the unit of the vertices.
+
+        Roots of `squared_distances`: below 1.5e-154 they have fewer digits, below 1.6e-162 they are
+        0.
+        """
+
+    @property
+    def squared_distances(self) -> NDArray[np.float64]:
+        """(k,) float64: squares of the distances."""
+
+    @property
+    def weights(self) -> NDArray[np.float64]:
+        """(k, 4) float64: weights of the four vertices in the nearest points.
+
+        Vertices are in the order of Geometry.vertices: the vertex and the face's corners, or both
+        ends of edge a and of edge b. The weights of each feature sum to 1.
+        """
+
+    @property
+    def closest(self) -> NDArray[np.uint8]:
+        """(k,) uint8: the nearest parts of both features, see Closest."""
+
+    @property
+    def min_distance(self) -> float | None:
+        """Smallest of the distances; None without a row."""
+
+    @property
+    def undecided(self) -> int:
+        """Number of rows so near to the distance that rounding decides about them."""
+
+class NearestTriangles(Answer):
+    """Answer of Distance: the nearest two triangles of different bodies.
+
+    All values are None if no two bodies may meet.
+    """
+
+    @property
+    def min_distance(self) -> float | None:
+        """Distance of the nearest two bodies: 0 if and only if they share a point."""
+
+    @property
+    def bodies(self) -> NDArray[np.uint32] | None:
+        """(2,) uint32: both bodies, the smaller number first."""
+
+    @property
+    def triangles(self) -> NDArray[np.uint32] | None:
+        """(2,) uint32: both triangles, by their indices in their bodies."""
+
+    @property
+    def weights(self) -> NDArray[np.float64] | None:
+        """(2, 3) float64: weights of the three corners of each triangle in its nearest point."""
+
+    @property
+    def points(self) -> NDArray[np.float64] | None:
+        """(2, 3) float64: the nearest point of each triangle, in the unit of the vertices."""
+
+    @property
+    def is_free(self) -> bool:
+        """Whether the distance is above 0, or no two bodies may meet."""
 
 class Geometry:
+    """Places of contacts or near pairs: a row a pair, in the order of the answer.
+
+    A row has four vertices: the vertex and the face's three corners, or both ends of edge a and of
+    edge b. The end with the larger index comes first. Places are those at the time of contact, or at
+    t = 0 for near pairs. Columns are read-only numpy arrays.
+    """
+
     def __len__(self) -> int: ...
+
     @property
-    def first(self) -> NDArray[np.uint8]: ...
+    def owner(self) -> NDArray[np.uint32]:
+        """(k, 4) uint32: body of each of the four vertices."""
+
     @property
-    def vertices(self) -> NDArray[np.uint32]: ...
+    def vertices(self) -> NDArray[np.uint32]:
+        """(k, 4) uint32: the four vertices, by their indices in their bodies."""
+
     @property
-    def weights(self) -> NDArray[np.float64]: ...
+    def weights(self) -> NDArray[np.float64]:
+        """(k, 4) float64: weight of each vertex in the nearest point of its feature.
+
+        None is negative. The weights of each feature sum to 1.
+        """
+
     @property
-    def points(self) -> NDArray[np.float64]: ...
+    def signed_weights(self) -> NDArray[np.float64]:
+        """(k, 4) float64: weights, positive for feature a and negative for feature b.
+
+        The sum of `signed_weights` times positions leads from the point on b to the point on a.
+        """
+
     @property
-    def distances(self) -> NDArray[np.float64]: ...
+    def points(self) -> NDArray[np.float64]:
+        """(k, 2, 3) float64: the nearest point of each feature, in the unit of the vertices."""
+
     @property
-    def normals(self) -> NDArray[np.float64]: ...
+    def distances(self) -> NDArray[np.float64]:
+        """(k,) float64: distances of these points."""
+
+    @property
+    def normals(self) -> NDArray[np.float64]:
+        """(k, 3) float64: unit vectors from feature b to feature a; zeros if no direction is defined."""
 
 class DeviceArray:
+    """Array in the memory of the device.
+
+    On a GPU, torch.from_dlpack and cupy.from_dlpack show this memory without a copy. Read it behind
+    `submit`, on the device's stream. On a CPU, numpy.from_dlpack takes a copy. The array ends with
+    the next call that changes the detector: then taking it raises InvalidArgumentError.
+    """
+
     def __dlpack__(
         self,
         *,
@@ -191,49 +547,264 @@ class DeviceArray:
         dl_device: tuple[int, int] | None = None,
         copy: bool | None = None,
     ) -> Any: ...
+
     def __dlpack_device__(self) -> tuple[int, int]: ...
+
     @property
     def __cuda_array_interface__(self) -> dict[str, Any]: ...
+
     @property
-    def shape(self) -> tuple[int, ...]: ...
+    def shape(self) -> tuple[int, ...]:
+        """Dimensions of the array."""
 
 class DeviceAnswer:
+    """Answer of a submitted query in the memory of the device.
+
+    Vertices, triangles and edges are numbered through all bodies: see `starts`.
+    """
+
     @property
-    def entries(self) -> str: ...
+    def entries(self) -> Literal["triangle pairs", "contacts", "near pairs", "nearest triangles"]:
+        """Kind of rows: "triangle pairs", "contacts", "near pairs" or "nearest triangles"."""
+
     @property
-    def lists(self) -> list[dict[str, DeviceArray]]: ...
+    def lists(self) -> list[dict[str, DeviceArray]]:
+        """Lists of rows, each a dictionary of columns with room for more rows than there are.
+
+        `status` counts the rows in use.
+
+        - Triangle pairs: triangles (room, 2) int32.
+        - Contacts: feature_a, feature_b (room,) int32, toi, toi_upper (room,) float64, state (room,)
+          uint32: 1 contact, 2 undecided, 4 added if the iterations ended.
+        - Near pairs: feature_a, feature_b, squared_distances (room,) float64, at (room, 2) float64:
+          the weights of the face's corners 1 and 2, or the place on each edge.
+        - Nearest triangles: triangles, distances, at (room, 2, 2), points (room, 2, 3).
+        """
+
     @property
-    def status(self) -> DeviceArray: ...
+    def status(self) -> DeviceArray:
+        """(5,) int64: counts of the submission, and whether its answer is whole.
+
+        - 0: rows of the first list, or the vertex/face rows of an ordered one.
+        - 1: rows of the second list, or the edge/edge rows of an ordered one.
+        - 2: number of lists that were too short. Unless it is 0, rows are missing: use `collect`.
+        - 3: 0, or the vertex with a coordinate that cannot be used.
+        - 4: triangle pairs that cross at the start of the step; -1 if they are not counted.
+        """
+
     @property
-    def earliest(self) -> DeviceArray | None: ...
+    def earliest(self) -> DeviceArray | None:
+        """(1,) float64: time of an Earliest query, NaN if nothing meets; None for other queries."""
+
     @property
-    def edges(self) -> DeviceArray: ...
+    def edges(self) -> DeviceArray:
+        """(edges, 2) int32: the vertices of each edge; no rows for Discrete and Distance."""
+
     @property
-    def starts(self) -> NDArray[np.uint32]: ...
+    def starts(self) -> NDArray[np.uint32]:
+        """(bodies + 1, 3) uint32: first vertex, triangle and edge of each body, and their numbers at the end."""
+
     @property
-    def is_ordered(self) -> bool: ...
+    def is_ordered(self) -> bool:
+        """Whether rows are in canonical order, vertex/face and edge/edge rows in one list."""
 
 class Detector:
-    def __new__(cls, scene: Scene | Body, query: Query, device: Device | None = None) -> Detector: ...
-    def frame(self, inputs: Mapping[int, Input] | None = None) -> Contacts: ...
-    def detect(self) -> Contacts: ...
-    def geometry(self, contacts: Contacts) -> Geometry: ...
-    def summary(self, contacts: Contacts) -> dict[str, Any]: ...
-    def plan(self) -> dict[str, Any]: ...
-    def prepare(self, inputs: Mapping[int, Input]) -> Contacts: ...
+    """Scene on a device, which answers queries step after step.
+
+    All queries share one memory and one upload of positions. Memory of a query is taken when it is
+    first used; the same query with other numbers takes none and builds nothing. An answer depends on
+    the query and on positions alone.
+
+    - `scene`: a Scene, or one Body, whose number is then 0.
+    - `device`: default Device(), a GPU if there is one.
+
+    Other threads of Python run during a call. Threads that share a device take turns.
+    """
+
+    def __new__(cls, scene: Scene | Body, *, device: Device | None = None) -> Detector: ...
+
+    def update(self, inputs: Mapping[int, Motion]) -> None:
+        """Move bodies for the next queries.
+
+        - `inputs`: a mapping from body numbers to motions. Deformable bodies take positions, (n, 3)
+          numbers, or a tuple of two such arrays for the start and the end of a step. Rigid bodies take
+          a Pose, or a tuple of two.
+
+        Other bodies rest where they are, or where their step ended. Discrete, Near and Distance use
+        the start of a step. Arrays of the detector's GPU are read in place, and so are packed numpy
+        arrays on a CPU. On a GPU, write to them only on the device's stream or after the next answer.
+
+        Raises InputError for positions that cannot be used, InvalidArgumentError for bodies that do
+        not exist and motions that do not fit: then nothing has moved. Positions on a GPU are checked
+        by the next query.
+        """
+
+    def query(self, query: Query[_A]) -> _A:
+        """Return the answer to a query, of the bodies where they are.
+
+        Raises InvalidArgumentError for Continuous and Earliest if the last update gave no body two
+        ends, and OutOfMemory if the answer has no room. There is no partial answer.
+        """
+
+    def step(self, inputs: Mapping[int, Motion], query: Query[_A]) -> _A:
+        """Move bodies and return the answer to a query, in one submission.
+
+        As `update` and `query`. An error of the motions or of the query has moved nothing.
+        """
+
+    def near(self, distance: float) -> NearPairs:
+        """Return features within a distance at t = 0: the answer to Near.
+
+        - `distance`: a length above 0, in the unit of the vertices.
+        """
+
+    def discrete(self, *, adjacent: bool = False) -> TrianglePairs:
+        """Return triangles that share a point at t = 0: the answer to Discrete.
+
+        - `adjacent`: also test triangles with a common vertex, for points beyond that vertex or edge.
+        """
+
+    def continuous(
+        self,
+        *,
+        tolerance: float | None = None,
+        min_separation: float = 0.0,
+        max_iterations: int | None = None,
+        assume_free: bool = False,
+    ) -> Contacts:
+        """Return all contacts of the step: the answer to Continuous.
+
+        - `tolerance`: accuracy of times, as a length of at least 0. Default: 1e-4 of the mean edge.
+        - `min_separation`: features that come this near count as contacts, a length of at least 0.
+        - `max_iterations`: most iterations for a pair, at least 1. Default 4096.
+        - `assume_free`: skip the count of triangle pairs that cross at the start of the step.
+
+        Raises InvalidArgumentError if the last update gave no body two ends.
+        """
+
+    def earliest(
+        self,
+        *,
+        tolerance: float | None = None,
+        min_separation: float = 0.0,
+        max_iterations: int | None = None,
+        assume_free: bool = False,
+    ) -> FirstContact:
+        """Return the first contact of the step: the answer to Earliest.
+
+        - `tolerance`: accuracy of the time, as a length of at least 0. Default: 1e-4 of the mean edge.
+        - `min_separation`: features that come this near count as contacts, a length of at least 0.
+        - `max_iterations`: most iterations for a pair, at least 1. Default 4096.
+        - `assume_free`: skip the count of triangle pairs that cross at the start of the step.
+
+        Raises InvalidArgumentError if the last update gave no body two ends.
+        """
+
+    def distance(self) -> NearestTriangles:
+        """Return the nearest two bodies at t = 0, and their distance: the answer to Distance."""
+
+    def geometry(self, answer: Contacts | NearPairs) -> Geometry:
+        """Return vertices, weights, points and normals of an answer's rows.
+
+        - `answer`: Contacts or NearPairs of this detector. Bodies must not have moved since.
+
+        Raises InvalidArgumentError for other answers.
+        """
+
+    def summary(self, answer: Answer) -> dict[str, Any]:
+        """Return all figures of an answer as a dictionary, as the program prints them with --json.
+
+        Counts, caveats, notes, milliseconds by stage. Takes the answers that `geometry` takes, and
+        those of other queries too.
+        """
+
+    def plan(self, query: Query[Any]) -> dict[str, Any]:
+        """Return the kernels, memory and transfers of a query as a dictionary.
+
+        They are counted: the query runs.
+        """
+
+    def prepare(self, inputs: Mapping[int, Motion], queries: Iterable[Query[Any]]) -> None:
+        """Prepare submissions: run the queries, load every kernel and take all memory.
+
+        After it, `submit` allocates nothing and waits for nothing, until another call changes the
+        detector.
+
+        - `inputs`: as of `update`, arrays that stay where they are: of the GPU, or packed numpy
+          arrays on a CPU. Write new positions into them. They are held while prepared.
+        - `queries`: a list of queries, answered by every submission. No two may differ in numbers
+          alone.
+        """
+
     @property
-    def is_prepared(self) -> bool: ...
-    def submit(self) -> None: ...
-    def on_device(self) -> DeviceAnswer | None: ...
-    def collect(self) -> Contacts: ...
-    def rebuild(self) -> None: ...
-    def interrupt(self) -> None: ...
-    def add(self, body: Body) -> int: ...
-    def remove(self, body: int) -> None: ...
-    def replace(self, body: int, by: Body) -> None: ...
+    def is_prepared(self) -> bool:
+        """Whether `submit` may be called, and a graph that recorded it launched again."""
+
+    def submit(self) -> None:
+        """Launch the prepared queries on the device's stream, and return at once.
+
+        A graph may record it (torch.cuda.graph, cupy). On a CPU it is done when it returns. Raises
+        InvalidArgumentError if the detector is not prepared.
+        """
+
+    def on_device(self, query: Query[Any]) -> DeviceAnswer | None:
+        """Return the answer to a prepared query in device memory; None if it is not prepared.
+
+        None also if no two bodies may meet.
+        """
+
+    def collect(self, query: Query[_A]) -> _A:
+        """Wait for the last submission, and return the answer to one of its queries.
+
+        If a list was too short it grows and the query runs again: the answer is whole, and the
+        detector is no longer prepared. A query that was not prepared runs too.
+        """
+
+    def rebuild(self) -> None:
+        """Rebuild tiles and trees: pays if bodies have moved far from where they were built.
+
+        Queries do so by themselves. Submissions do not.
+        """
+
+    def interrupt(self) -> None:
+        """End the call of another thread or, if none runs, the next call.
+
+        That call raises Interrupted, and the detector can be used again. Its motions were taken. On
+        the main thread Ctrl-C does the same, and raises KeyboardInterrupt.
+        """
+
+    def add(self, body: Body) -> int:
+        """Add a body, and return its number."""
+
+    def remove(self, body: int) -> None:
+        """Remove the body with that number. The next body that is added may take its number."""
+
+    def replace(self, body: int, by: Body) -> None:
+        """Replace the body with that number."""
+
+    def download_positions(self, body: int) -> tuple[NDArray[Any], NDArray[Any]] | tuple[Pose, Pose]:
+        """Return the place of a body at the start and the end of its step, copied to the host.
+
+        Two (n, 3) arrays, or two Pose of a rigid body; both are equal if the body rests. Cost: a copy
+        of all vertices if only the device has them, and a wait.
+        """
+
     @property
-    def tolerance(self) -> float | None: ...
+    def bodies(self) -> list[int]:
+        """Numbers of all bodies, ascending."""
+
     @property
-    def largest_tolerance(self) -> float | None: ...
+    def builds(self) -> int:
+        """Number of times that tiles or trees were built."""
+
     @property
-    def device(self) -> Device: ...
+    def tolerance(self) -> float:
+        """Smallest default tolerance of a pair of bodies, a length."""
+
+    @property
+    def largest_tolerance(self) -> float:
+        """Largest default tolerance of a pair of bodies, a length."""
+
+    @property
+    def device(self) -> Device:
+        """Device of this detector."""

@@ -1,10 +1,10 @@
-"""Arrays of other libraries, told apart by what they can do. None of these libraries is imported here."""
+"""Arrays of other libraries, recognized by their protocols. None of these libraries is imported here."""
 
 from ._native import Device, is_on_gpu
 
 
 def on_host(array):
-    """The same array where numpy can read it: copied from a GPU, else itself."""
+    """Return the array if numpy can read it, else a copy from the GPU."""
     if not is_on_gpu(array):
         return array
     for copy in (lambda: array.detach().cpu().numpy(), lambda: array.get(), lambda: array.numpy()):
@@ -12,14 +12,14 @@ def on_host(array):
             return copy()
         except AttributeError:
             continue
-    raise TypeError(f"an array of type {type(array).__name__} on a GPU: give a copy in the host's memory")
+    raise TypeError(f"an array of type {type(array).__name__} is on a GPU; pass a copy in host memory")
 
 
 def device_of(array):
-    """Where to ask about an array: the GPU that it lies on, else any machine.
+    """Return a device that can read the array: its GPU, else the default.
 
-    By DLPack an array says which GPU that is, and waits for who asks. What has no DLPack is of the GPU that this thread is bound to,
-    and made on its default stream.
+    With DLPack an array names its GPU, and makes the reader wait for it. An array without DLPack is on the GPU that this thread
+    is bound to, and made on its default stream.
     """
     if not is_on_gpu(array):
         return Device()

@@ -1,12 +1,12 @@
-"""What nearmiss raises: a class for each who must act, the message with what to do.
+"""Exceptions of nearmiss: a class for each kind of fault.
 
-Numbers that describe meshes, positions and poses, in files and in arrays, are input (InputError); all else that a caller passes
-(options, names, kinds, numbers of bodies, shapes and types of arrays) is a choice (InvalidArgumentError).
+Numbers of meshes, positions and poses are input (InputError). Everything else that a caller passes is an argument
+(InvalidArgumentError): options, names, kinds, body numbers, shapes and types of arrays.
 """
 
 
 class NearmissError(Exception):
-    """The base of all of them."""
+    """Base class of all errors."""
 
 
 class InputError(NearmissError, ValueError):
@@ -14,24 +14,24 @@ class InputError(NearmissError, ValueError):
 
 
 class InvalidArgumentError(NearmissError, ValueError):
-    """An argument that does not exist or does not go with the others, whatever the data. Choose again."""
+    """Argument that does not exist or does not go with the others, independent of the data. Correct the call."""
 
 
 class DeviceError(NearmissError, RuntimeError):
-    """The machine refused, or there is none. The message has its driver's text."""
+    """Failure of the machine, or no such machine. The message has the driver's text."""
 
 
 class OutOfMemory(NearmissError, MemoryError):
-    """Memory ran out. Nothing was lost in silence: there is no answer."""
+    """Memory that ran out. There is no partial answer."""
 
 
 class MeshWarning(UserWarning):
-    """A mesh has less than its file, or a face is cut as it can be: read_mesh counts such parts."""
+    """Parts of a mesh file that read_mesh skipped, left out or cut as a fan."""
 
 
 class Interrupted(NearmissError, RuntimeError):
-    """Another thread has called Detector.interrupt. There is no answer, and the detector can be used again."""
+    """Call that Detector.interrupt has ended. There is no answer, and the detector can be used again."""
 
 
 class Bug(NearmissError, RuntimeError):
-    """A fault of nearmiss itself. Tell us."""
+    """Fault of nearmiss itself. Please report it."""

@@ -1,9 +1,9 @@
-"""One question about one mesh, in one line. A detector that is kept answers frame after frame, and faster."""
+"""Queries of one mesh, in one line. A detector that is kept is faster from the second query on."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ._native import Body, Contacts, Continuous, Detector, Device, Discrete, Earliest, Near
+from ._native import Body, Contacts, Detector, Device, NearPairs
 from .arrays import device_of, on_host
 from .errors import InputError
 
@@ -11,40 +11,53 @@ __all__ = ["contacts", "near", "self_intersections", "time_of_impact"]
 
 
 def self_intersections(vertices, faces, *, adjacent: bool = False, device: Device | None = None) -> NDArray[np.uint32]:
-    """Which triangles of a mesh share a point with another one, by exact signs: none is missed, none is invented.
+    """Return the pairs of triangles of a mesh that share a point, by exact signs.
 
-    vertices: (n, 3) numbers; float32 and float64 are taken as they are, never rounded. A GPU's array too.
-    faces:    (m, 3) integers, the vertices of each triangle.
-    adjacent: whether triangles that share a vertex are asked, too: do they share more than that vertex or edge?
+    No pair is missed, none is invented. Touching counts. Two indices at one place are two vertices: triangles on both sides of
+    such a seam share that point.
+
+    - `vertices`: (n, 3) numbers. float32 and float64 are used as they are, never rounded. Arrays of a GPU work too.
+    - `faces`: (m, 3) integers from 0, the vertices of each triangle.
+    - `adjacent`: also test triangles with a common vertex, for points beyond that vertex or edge.
+    - `device`: default: the GPU of the array, else Device().
+
     Returns (k, 2) uint32: pairs of triangles, the smaller index first, ascending.
-
-    Triangles that merely touch where the mesh is not welded (two vertices in one place) share that point.
+    Raises InputError for vertices that are not finite and for indices without a vertex.
     """
-    return _ask(vertices, faces, Discrete(adjacent=adjacent), device).indices
+    return _detector(vertices, faces, device).discrete(adjacent=adjacent).triangles
 
 
-def near(vertices, faces, distance: float, *, device: Device | None = None) -> Contacts:
-    """Which vertices and faces, and which edges, of a mesh are within a distance of each other, and where they are nearest.
+def near(vertices, faces, distance: float, *, device: Device | None = None) -> NearPairs:
+    """Return the vertex/face and edge/edge pairs of a mesh within a distance, and their nearest points.
 
-    vertices, faces: as for self_intersections. distance: a length above 0, in the unit of the vertices.
-    Returns Contacts: kind, indices, squared_distances, weights, closest; a row a pair. None is missed; features of a common
-    vertex are no pair.
+    No pair is missed. Features with a common vertex are left out.
+
+    - `vertices`, `faces`, `device`: as of self_intersections.
+    - `distance`: a length above 0, in the unit of the vertices.
+
+    Returns NearPairs, a row a pair: kind, feature_a, feature_b, distances, weights, closest.
     """
-    return _ask(vertices, faces, Near(distance), device)
+    return _detector(vertices, faces, device).near(distance)
 
 
 def contacts(
-    t0, t1, faces, *, separation: float = 0.0, tolerance: float | None = None, device: Device | None = None
+    t0, t1, faces, *, min_separation: float = 0.0, tolerance: float | None = None, device: Device | None = None
 ) -> Contacts:
-    """Which features of a mesh meet while its vertices move from t0 to t1 in straight lines, and when: certified.
+    """Return the features of a mesh that meet while its vertices move in straight lines, with certified times.
 
-    t0, t1:     (n, 3) numbers each, as vertices of self_intersections.
-    separation: what comes nearer than this is in contact, in the unit of the vertices; 0 for touching.
-    tolerance:  how well a time is told: as a length moved. Default: 1e-4 of the mean edge.
-    Returns Contacts: kind, indices, toi and toi_upper (bounds of the first time, in [0, 1]), status. None is missed, none is late.
-    `starts_crossing` counts the triangle pairs that share a point at the start: those need not have a time.
+    No contact is missed, and none is late. Triangles that already cross at the start need not have a row: `starts_crossing`
+    counts them.
+
+    - `t0`, `t1`: (n, 3) numbers each, vertices at the start and at the end of the step.
+    - `faces`, `device`: as of self_intersections.
+    - `min_separation`: features that come this near count as contacts, a length of at least 0. Default 0: touching.
+    - `tolerance`: accuracy of times, as a length. Default: 1e-4 of the mean edge.
+
+    Returns Contacts, a row a pair: kind, feature_a, feature_b, toi and toi_upper in [0, 1], status.
     """
-    return _ask(t0, faces, Continuous(separation=separation, tolerance=tolerance), device, t1)
+    detector = _detector(t0, faces, device)
+    detector.update({0: (t0, t1)})
+    return detector.continuous(min_separation=min_separation, tolerance=tolerance)
 
 
 def time_of_impact(
@@ -52,30 +65,33 @@ def time_of_impact(
     t1,
     faces,
     *,
-    separation: float = 0.0,
+    min_separation: float = 0.0,
     tolerance: float | None = None,
     assume_free: bool = False,
     device: Device | None = None,
 ) -> float | None:
-    """How far a step may go: the first time in [0, 1] at which any two features meet, never late; None if the step is free.
+    """Return the safe part of a step: the time in [0, 1] of the first contact, or None if nothing meets.
 
-    Raises InputError if triangles cross at the start, unless the first time is 0: no step is free then, though none of their
-    features need meet again. assume_free: the start is not checked.
-    Other arguments as for contacts.
+    The time is never late.
+
+    - `assume_free`: skip the check of the start.
+    - Other arguments: as of contacts.
+
+    Raises InputError if triangles cross at the start, unless the time is 0: then no step is safe.
     """
-    query = Earliest(separation=separation, tolerance=tolerance, assume_free=assume_free)
-    found = _ask(t0, faces, query, device, t1)
-    count = found.starts_crossing
-    if count and found.earliest != 0.0:
+    detector = _detector(t0, faces, device)
+    detector.update({0: (t0, t1)})
+    first = detector.earliest(min_separation=min_separation, tolerance=tolerance, assume_free=assume_free)
+    count = first.starts_crossing
+    if count and first.toi != 0.0:
         pairs = "1 triangle pair crosses" if count == 1 else f"{count} triangle pairs cross"
         raise InputError(
             f"{pairs} at the start of the step, so no part of it is free of contact; "
-            "list them by self_intersections(t0, faces), or leave them aside by assume_free=True"
+            "list them by self_intersections(t0, faces), or skip the check by assume_free=True"
         )
-    return found.earliest
+    return first.toi
 
 
-def _ask(here, faces, query, device, there=None):
-    """Of a mesh that rests here, or moves from here to there."""
-    detector = Detector(Body(on_host(here), on_host(faces)), query, device or device_of(here))
-    return detector.detect() if there is None else detector.frame({0: (here, there)})
+def _detector(vertices, faces, device):
+    """A detector of one mesh, on a device that can read its vertices."""
+    return Detector(Body(on_host(vertices), on_host(faces)), device=device or device_of(vertices))
