@@ -5,9 +5,9 @@
 //! timed if their files exist.
 
 use criterion::{Bencher, BenchmarkId, Criterion, criterion_group, criterion_main};
+use nearmiss::Stages;
 use nearmiss::device::Backend;
 use nearmiss::mesh::Body;
-use nearmiss::pipeline::Stages;
 use nearmiss::{Device, Query};
 use nearmiss_io::MeshFile;
 use nearmiss_lab::OneQuery;

@@ -41,7 +41,8 @@
 //! | [`Near`] | features within a distance, their distance and nearest points |
 //! | [`Distance`] | the two nearest bodies, their distance and nearest points |
 //!
-//! [`Query`] holds any of these, for programs that choose at run time.
+//! [`Query`] holds any of these, for programs that choose at run time. None of them misses a
+//! contact. [`research`] is the laboratory: other solvers, volumes and walks, and the paper's system.
 //!
 //! [`MultiDetector`] divides a scene among several devices. [`Detector::geometry`] computes
 //! vertices, weights, points and normals of contacts.
@@ -63,9 +64,9 @@ pub mod device;
 pub mod error;
 pub mod memory;
 pub mod mesh;
-#[doc(hidden)]
-pub mod pipeline;
+mod pipeline;
 pub mod query;
+pub mod research;
 #[cfg(test)]
 mod samples;
 pub mod scene;

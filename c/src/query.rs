@@ -3,8 +3,9 @@
 use crate::body::flag;
 use crate::error::refused;
 use crate::research::NearmissResearch;
-use nearmiss::query::{Rebuild, TriangleTest};
-use nearmiss::{Discrete, Error, Query};
+use nearmiss::query::Rebuild;
+use nearmiss::research::{QueryExt, TriangleTest, WithSolver};
+use nearmiss::{Error, Query};
 
 /// Kinds of queries.
 #[allow(non_camel_case_types, reason = "as C sees them")]
@@ -110,13 +111,13 @@ impl NearmissQuery {
         let assume_free = flag(self.assume_free, "assume_free")?;
         self.check_idle(&query)?;
         if let (Query::Discrete(discrete), true) = (&mut query, adjacent) {
-            discrete.test = TriangleTest::Exact { adjacent };
+            *discrete = discrete.with_adjacent(adjacent);
         }
         if let Query::Continuous(continuous) = &mut query {
-            continuous.assume_free = assume_free;
+            *continuous = continuous.assuming_free(assume_free);
         }
         if let Query::Earliest(earliest) = &mut query {
-            earliest.assume_free = assume_free;
+            *earliest = earliest.assuming_free(assume_free);
         }
         if let Some(certified) = query.certified_mut() {
             certified.tolerance = (self.tolerance != -1.0).then_some(self.tolerance);
@@ -140,7 +141,8 @@ impl NearmissQuery {
     /// Refuses fields that would do nothing.
     fn check_idle(&self, query: &Query) -> Result<(), Error> {
         let exact = |query: &Query| {
-            matches!(query, Query::Discrete(Discrete { test: TriangleTest::Exact { .. }, .. }))
+            let Query::Discrete(discrete) = query else { return false };
+            matches!(discrete.chosen(), TriangleTest::Exact { .. })
         };
         let (is_exact, is_certified) = (exact(query), query.certified().is_some());
         let is_near = matches!(query, Query::Near(_));

@@ -2,9 +2,8 @@
 
 use crate::error::refused;
 use crate::rows::text;
-use nearmiss::query::{
-    Bv, Continuous, ContinuousSolver, Discrete, Earliest, Named, Search, Solver, TriangleTest,
-};
+use nearmiss::query::{Continuous, Discrete, Earliest, Named};
+use nearmiss::research::{Bv, ContinuousSolver, KindExt, QueryExt, Search, Solver, TriangleTest, WithSolver};
 use nearmiss::{Error, Query};
 use std::ffi::c_char;
 use std::ptr::null;

@@ -3,9 +3,10 @@
 use crate::output::{Target, unpacked};
 use crate::rows::{Columns, JsonRows};
 use crate::vtp::Vtp;
-use nearmiss::contacts::{Contact, ContactGeometry, Contacts, Kind, Rows, Summary, TrianglePair};
+use nearmiss::contacts::{Contact, ContactGeometry, Contacts, Kind, Rows, TrianglePair};
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
+use nearmiss::research::Summary;
 use nearmiss::scene::BodyId;
 use nearmiss_io::Polygons;
 use serde::Serialize;

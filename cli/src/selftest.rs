@@ -12,10 +12,11 @@ use nearmiss::device::Device;
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
-use nearmiss::pipeline::of_edges;
-use nearmiss::query::{
-    Broad, Bv, Certified, Continuous, FrontShape, Near, Query, QueueShape, Refit, Solver, StealShape,
-    Traversal,
+use nearmiss::query::{Continuous, Query};
+use nearmiss::research::pipeline::of_edges;
+use nearmiss::research::{
+    Broad, Bv, Certified, FrontShape, KindExt, QueryExt, QueueShape, Refit, Solver, StealShape, Traversal,
+    WithSolver,
 };
 use nearmiss::words::counted;
 use nearmiss_lab::OneQuery;
@@ -152,7 +153,7 @@ fn questions(bodies: &[Body]) -> impl Iterator<Item = (String, Query)> {
     every.chain([(apart.into(), true)]).map(move |(query, is_apart)| {
         // About a tenth of the mean edge, which a scene of points has not.
         let query = match query {
-            Query::Near(near) if hundredth > 0.0 => Near { distance: 10.0 * hundredth, ..near }.into(),
+            Query::Near(_) if hundredth > 0.0 => Query::near(10.0 * hundredth),
             other => other,
         };
         let how = if is_apart { ", a separation" } else { "" };

@@ -18,9 +18,8 @@ pub enum Caveat {
     /// The earliest time is that of an undecided pair, and no contact begins then. An earliest
     /// query does not test pairs that begin later, so it cannot count them.
     EarliestUndecided,
-    /// Pairs that reached [`Certified::max_iterations`](crate::query::Certified::max_iterations).
-    /// They are listed, and their times may be far too early. An earliest query does not count
-    /// them.
+    /// Pairs that reached [`with_max_iterations`](crate::Continuous::with_max_iterations). They are
+    /// listed, and their times may be far too early. An earliest query does not count them.
     Iterations {
         /// Number of pairs.
         pairs: u64,

@@ -12,9 +12,9 @@ mod notes;
 pub mod on_device;
 pub(crate) mod sort;
 mod stats;
-mod summary;
+pub(crate) mod summary;
 mod triangles;
-mod work;
+pub(crate) mod work;
 
 pub use caveats::{Caveat, TURN_DEGREES};
 pub use first::FirstContact;
@@ -26,9 +26,9 @@ pub use nearest::NearestTriangles;
 pub use notes::Note;
 pub use on_device::{DeviceAnswer, DeviceList, Entries};
 pub use stats::Stats;
-pub use summary::Summary;
+pub(crate) use summary::Summary;
 pub use triangles::{TriangleContact, triangle_contacts};
-pub use work::{Front, Queues};
+pub(crate) use work::{Front, Queues};
 
 use crate::query::{Query, TypedQuery};
 use crate::scene::BodyId;
@@ -197,7 +197,7 @@ impl<T> Answer<T> {
     }
 
     /// Whether the answer proves that nothing touches. It is as certain as the solver: see
-    /// [`Solver::is_certain`](crate::query::Solver::is_certain).
+    /// [`Solver::is_certain`](crate::research::Solver::is_certain).
     ///
     /// - Continuous and earliest: the start was checked, no triangles share a point there, and
     ///   nothing meets within the step.

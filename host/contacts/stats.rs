@@ -42,9 +42,9 @@ pub struct Stats {
     /// Slices of the frame: more than 1 if the lists of a whole one would exceed the memory.
     pub slices: u32,
     /// Statistics of the work queues.
-    pub queues: Queues,
+    pub(crate) queues: Queues,
     /// Statistics of the front.
-    pub front: Front,
+    pub(crate) front: Front,
 }
 
 impl Stats {

@@ -9,9 +9,8 @@ use crate::scene::Body;
 use std::sync::Arc;
 
 impl Detector {
-    /// Smallest default tolerance of a pair of bodies for a certified solver, in scene units. A
-    /// pair has the smaller default of its two bodies. That is
-    /// [`Certified::TOLERANCE`](crate::query::Certified::TOLERANCE) of the mean edge of the body's
+    /// Smallest default tolerance of a pair of bodies for a query without one, in scene units. A
+    /// pair has the smaller default of its two bodies. That is 1e-4 of the mean edge of the body's
     /// original mesh, rounded down to a power of two. It stays when bodies move. Cost: a square
     /// root for each side of a triangle, once a body.
     pub fn tolerance(&mut self) -> f64 {
@@ -27,7 +26,7 @@ impl Detector {
     /// Returns the statistics and notes of an answer, as the command line prints them. Cost: a hash
     /// of the answer, and the notes. Notes compare both ends of the step if nothing moves. They
     /// sort all vertices if there are [`Note::MANY`](crate::contacts::Note::MANY) contacts.
-    pub fn summary(&mut self, contacts: &Contacts) -> Summary {
+    pub(crate) fn summary(&mut self, contacts: &Contacts) -> Summary {
         let query = contacts.query;
         let named = query.certified().map(|certified| certified.tolerance);
         let tolerances = match named {
@@ -84,7 +83,7 @@ impl Detector {
 
     /// Returns the number of levels of a query's trees: over moving bodies, and over fixed ones if
     /// there are any.
-    pub fn depths(&mut self, query: &Query) -> Vec<usize> {
+    pub(crate) fn depths(&mut self, query: &Query) -> Vec<usize> {
         self.of_query(query, Vec::new(), |pipeline, at| Ok(pipeline.depths(at))).unwrap_or_default()
     }
 
@@ -100,7 +99,7 @@ impl Detector {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn fingerprints(&mut self, query: &Query) -> Result<Vec<(&'static str, u64)>, Error> {
+    pub(crate) fn fingerprints(&mut self, query: &Query) -> Result<Vec<(&'static str, u64)>, Error> {
         self.of_query(query, Vec::new(), |pipeline, at| pipeline.fingerprints(at))
     }
 
@@ -108,7 +107,7 @@ impl Detector {
     ///
     /// # Errors
     /// [`Error::Bug`] with the first violation; those of the device.
-    pub fn check_volumes(&mut self, query: &Query) -> Result<(), Error> {
+    pub(crate) fn check_volumes(&mut self, query: &Query) -> Result<(), Error> {
         self.of_query(query, (), |pipeline, at| pipeline.check(at))
     }
 }

@@ -17,7 +17,12 @@ impl Detector {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn repeat_stage(&mut self, query: &Query, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
+    pub(crate) fn repeat_stage(
+        &mut self,
+        query: &Query,
+        stage: Stage,
+        times: u32,
+    ) -> Result<Vec<f64>, Error> {
         let milliseconds = self.repeated(query, stage, times);
         self.ended(milliseconds)
     }
@@ -45,7 +50,7 @@ impl Detector {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn narrow_steps(&mut self, query: &Query) -> Result<Vec<(&'static str, f64)>, Error> {
+    pub(crate) fn narrow_steps(&mut self, query: &Query) -> Result<Vec<(&'static str, f64)>, Error> {
         let question = self.question(*query)?;
         let steps = self
             .have_answered(&question)

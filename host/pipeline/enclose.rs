@@ -8,7 +8,6 @@ use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::query::Refit;
 use nearmiss_kernels::abi::{Node, Point, Positions, ROOT, Span, VertexMotion};
-use nearmiss_kernels::bv::Axes;
 use nearmiss_kernels::entry::Kernels;
 use nearmiss_kernels::math::Vec3;
 
@@ -50,17 +49,17 @@ impl<R: Precision, V: Kernels> Enclosed<R, V> {
         device: &Device,
         triangles: &[[u32; 3]],
         [t0, t1]: [&[Vec3<R>]; 2],
-        (refit, axes, margin): (Refit, Axes, f32),
+        (refit, margin): (Refit, f32),
     ) -> Result<Self, Error> {
         let layout = Layout::single(triangles.len() as u32);
-        let tree = Tree::new(device, &TreeSpec::alone(&layout, refit, V::group(axes) > 0))?;
+        let tree = Tree::new(device, &TreeSpec::alone(&layout, refit, V::GROUP > 0))?;
         let mut enclosed = Enclosed {
             triangles: triangles.to_vec(),
             faces: device.upload(triangles)?,
             still: device.buffer(t0.len())?,
             moving: device.buffer(t0.len())?,
             at: (Vec::new(), false),
-            volumes: Volumes::new(device, &tree, (axes, margin))?,
+            volumes: Volumes::new(device, &tree, margin)?,
             tree,
             device: device.clone(),
         };
@@ -167,13 +166,13 @@ mod tests {
     fn outside<R: Precision, V: Kernels>(
         body: &Body,
         (size, at): (f64, f64),
-        (refit, axes): (Refit, Axes),
+        refit: Refit,
         (margin, near): (f32, f32),
         fault: impl Fn(&mut [Node<V>]),
     ) -> usize {
         let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
         let [t0, t1] = frames::<R>(body, size, at);
-        let way = (refit, axes, margin);
+        let way = (refit, margin);
         let enclosed = Enclosed::<R, V>::new(&device, body.faces(), [&t0, &t1], way).expect("a tree");
         enclosed.check().expect("sound");
         enclosed.outside(near, fault).expect("nodes")
@@ -185,27 +184,27 @@ mod tests {
     impl WithVolume for All {
         type Out = ();
 
-        fn with<V: Kernels>(self, axes: Axes) {
-            all::<f32, V>(axes);
-            all::<f64, V>(axes);
+        fn with<V: Kernels>(self) {
+            all::<f32, V>();
+            all::<f64, V>();
         }
     }
 
-    fn all<R: Precision, V: Kernels>(axes: Axes) {
+    fn all<R: Precision, V: Kernels>() {
         let bodies = [soup(1, 3, false), soup(700, 4, false), soup(700, 4, true), sheet(20)];
         for (i, body) in bodies.iter().enumerate() {
             for place in [(1.0, 0.0), (1e-3, 1e3), (1e25, 0.0)] {
-                let refit = [Refit::Levels, Refit::Treelets, Refit::BottomUp][i % 3];
-                let count = outside::<R, V>(body, place, (refit, axes), (0.0, 0.0), |_| ());
+                let refit = [Refit::Levels, Refit::Treelets][i % 2];
+                let count = outside::<R, V>(body, place, refit, (0.0, 0.0), |_| ());
                 assert_eq!(count, 0, "{} {place:?}", body.name());
             }
         }
         let body = soup(300, 8, true);
         for (refit, place) in
-            [(Refit::Levels, (1.0, 0.0)), (Refit::Treelets, (1e-3, 1e3)), (Refit::BottomUp, (1e25, 0.0))]
+            [(Refit::Levels, (1.0, 0.0)), (Refit::Treelets, (1e-3, 1e3)), (Refit::Levels, (1e25, 0.0))]
         {
             let near = 0.125 * place.0 as f32;
-            let out = |margin| outside::<R, V>(&body, place, (refit, axes), (margin, near), |_| ());
+            let out = |margin| outside::<R, V>(&body, place, refit, (margin, near), |_| ());
             assert_eq!(out(near), 0, "{refit:?}, {place:?}: what is near is held as well");
             assert!(out(0.0) > 0, "{refit:?}, {place:?}: forgotten growth is noticed");
             // Far from the origin a hundredth of the growth is less than the rounding of bounds.
@@ -215,7 +214,7 @@ mod tests {
             );
         }
         // A node with its left child's volume: it does not hold the right one.
-        let few = outside::<R, V>(&body, (1.0, 0.0), (Refit::Levels, axes), (0.0, 0.0), |nodes| {
+        let few = outside::<R, V>(&body, (1.0, 0.0), Refit::Levels, (0.0, 0.0), |nodes| {
             let at = (ROOT as usize..nodes.len()).rfind(|&at| !nodes[at].is_leaf()).expect("an inner node");
             nodes[at].volume = nodes[nodes[at].link as usize].volume;
         });

@@ -21,11 +21,11 @@ mod typed;
 pub(crate) mod wear;
 
 pub use broad::Share;
-pub use layout::{FeatureTopology, Layout, Offsets};
+pub use layout::{FeatureTopology, Layout};
 pub use placing::{Moved, Seen, Whereabouts};
 pub use tolerance::{Tolerances, of_pair};
 pub(crate) use typed::not_prepared;
-pub use typed::{Found, Hits, Listed, Pipeline, Submits};
+pub use typed::{Found, Hits, Listed, Pipeline};
 
 #[doc(hidden)]
 pub use crate::scene::{mean_side, of_edges};

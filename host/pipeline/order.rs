@@ -157,8 +157,8 @@ fn bits(end: u64) -> u32 {
 mod tests {
     use super::*;
     use crate::device::emulator::{Emulator, Mode, Order as Blocks};
-    use crate::pipeline::Offsets;
     use crate::pipeline::counts::FrameCounters;
+    use crate::pipeline::layout::Offsets;
     use crate::samples::words;
     use nearmiss_kernels::abi::{Hit, Pair};
     use nearmiss_kernels::prim::inclusion::Verdict;

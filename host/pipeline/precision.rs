@@ -18,10 +18,6 @@ pub trait Precision: Real + Send {
     type Bounds: Entry<Args = MortonArgs<Self>>;
     /// Computes codes of the triangle centres.
     type Morton: Entry<Args = MortonArgs<Self>>;
-    /// Computes boxes of runs of triangles.
-    type HalvesBounds: Entry<Args = CutArgs<Self>>;
-    /// Computes codes of triangles in runs.
-    type Halves: Entry<Args = CutArgs<Self>>;
     /// Cuts runs into halves of halves.
     type Runs: Entry<Args = CutArgs<Self>>;
     /// The discrete test of Möller (1997), in floating point.
@@ -91,8 +87,6 @@ impl Precision for f32 {
     type Starts = entry::place_starts_f32;
     type Bounds = entry::construct_bounds_f32;
     type Morton = entry::construct_morton_f32;
-    type HalvesBounds = entry::construct_halves_bounds_f32;
-    type Halves = entry::construct_halves_f32;
     type Runs = entry::construct_runs_f32;
     type Moller = entry::narrow_moller_f32;
     type Filter = entry::narrow_filter_f32;
@@ -140,8 +134,6 @@ impl Precision for f64 {
     type Starts = entry::place_starts_f64;
     type Bounds = entry::construct_bounds_f64;
     type Morton = entry::construct_morton_f64;
-    type HalvesBounds = entry::construct_halves_bounds_f64;
-    type Halves = entry::construct_halves_f64;
     type Runs = entry::construct_runs_f64;
     type Moller = entry::narrow_moller_f64;
     type Filter = entry::narrow_filter_f64;

@@ -1,7 +1,7 @@
 //! The choice of a bounding volume: made of the list of volumes, [`nearmiss_kernels::volumes`].
 
 use super::{QueryKind, named};
-use nearmiss_kernels::bv::{self, Axes};
+use nearmiss_kernels::bv;
 use nearmiss_kernels::entry::Kernels;
 
 /// What is done with a volume that was chosen by name.
@@ -9,18 +9,16 @@ use nearmiss_kernels::entry::Kernels;
 pub trait WithVolume {
     /// What comes of it.
     type Out;
-    /// Does it, with that type and that rule of axes.
-    fn with<V: Kernels>(self, axes: Axes) -> Self::Out;
+    /// Does it, with that type.
+    fn with<V: Kernels>(self) -> Self::Out;
 }
 
 macro_rules! choices {
-    ($($Volume:ident = $volume:literal [$($groups:ident)?] {
-        $($choice:ident = $name:literal, $axes:ident, $about:literal;)*
-    })*) => {
+    ($($Volume:ident = $volume:literal [$($groups:ident)?], $about:literal;)*) => {
         named! {
             /// The bounding volume of each node.
             pub enum Bv {
-                $($(#[doc = $about] $choice = $name,)*)*
+                $(#[doc = $about] $Volume = $volume,)*
             }
         }
 
@@ -29,7 +27,7 @@ macro_rules! choices {
             #[doc(hidden)]
             pub fn with<W: WithVolume>(self, what: W) -> W::Out {
                 match self {
-                    $($(Bv::$choice => what.with::<bv::$Volume>(Axes::$axes),)*)*
+                    $(Bv::$Volume => what.with::<bv::$Volume>(),)*
                 }
             }
         }

@@ -7,10 +7,12 @@ use nearmiss_kernels::prim::inclusion::Params;
 /// A solver of features in motion that misses none and is never late: how finely it tells times, and how long it looks.
 ///
 /// ```
-/// use nearmiss::query::{Certified, Continuous, Query};
+/// use nearmiss::Continuous;
+/// use nearmiss::research::{Certified, CertifiedPrecision, WithSolver};
 ///
-/// // What comes within a thousandth is in contact.
-/// let query: Query = Continuous::by(Certified { separation: 1e-3, ..Certified::default() }).into();
+/// // In f64 alone; what comes within a thousandth is in contact.
+/// let certified = Certified { separation: 1e-3, ..Certified::by(CertifiedPrecision::F64) };
+/// let query = Continuous::by(certified);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Certified {

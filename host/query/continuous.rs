@@ -4,43 +4,45 @@ use super::{Certified, CertifiedPrecision, ListedRows, Question, Search, Solver}
 use crate::contacts::Contact;
 use crate::error::Error;
 
-/// Which vertex/face and edge/edge pairs meet at some t in [0, 1], and when first?
+/// Vertex/face and edge/edge pairs that meet at some t in [0, 1], and when first.
+///
+/// No contact is missed, and no time is late.
 ///
 /// ```
-/// use nearmiss::query::{Certified, Continuous, Query};
+/// use nearmiss::Continuous;
 ///
-/// let certified = Certified { tolerance: Some(1e-6), ..Certified::default() };
-/// let query: Query = Continuous::by(certified).into();
+/// // Features within a thousandth are in contact; times are early by at most a millionth of a length.
+/// let query = Continuous::default().with_min_separation(1e-3).with_tolerance(1e-6);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Continuous {
     /// The test of a pair.
-    pub solver: ContinuousSolver,
+    pub(crate) solver: ContinuousSolver,
     /// How candidates are found.
-    pub search: Search,
+    pub(crate) search: Search,
     /// Whether the start of the step is taken to be free of crossing triangles. By default the
     /// pairs that share a point at t = 0 are counted:
     /// [`Answer::starts_crossing`](crate::Answer::starts_crossing).
-    pub assume_free: bool,
+    pub(crate) assume_free: bool,
 }
 
-/// When does the first of them meet?
+/// The first contact of a step: how far the step may go. Never late.
 ///
 /// ```
-/// use nearmiss::query::{ContinuousSolver, Earliest, Precision, Query};
+/// use nearmiss::Earliest;
 ///
-/// // A guess, by the seed's cubic.
-/// let query: Query = Earliest::by(ContinuousSolver::Cubic(Precision::F64)).into();
+/// // The first time at which two features are a thousandth apart.
+/// let query = Earliest::default().with_min_separation(1e-3);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Earliest {
     /// The test of a pair.
-    pub solver: ContinuousSolver,
+    pub(crate) solver: ContinuousSolver,
     /// How candidates are found.
-    pub search: Search,
+    pub(crate) search: Search,
     /// Whether the start of the step is taken to be free of crossing triangles, as in
     /// [`Continuous`].
-    pub assume_free: bool,
+    pub(crate) assume_free: bool,
 }
 
 /// The test of a pair of features in motion.
@@ -93,7 +95,8 @@ impl ContinuousSolver {
         }
     }
 
-    /// The solver of that name, all other choices at their defaults; none where it is another kind's.
+    /// The solver of that name, all other choices at their defaults; none where it is another
+    /// kind's.
     pub fn named(name: Solver) -> Option<ContinuousSolver> {
         ContinuousSolver::ALL.into_iter().find(|solver| solver.name() == name)
     }
@@ -104,6 +107,11 @@ impl ContinuousSolver {
             ContinuousSolver::Certified(certified) => Some(certified),
             ContinuousSolver::Cubic(_) => None,
         }
+    }
+
+    /// The choices of a certified one, or the default ones.
+    fn or_certified(&self) -> Certified {
+        self.certified().copied().unwrap_or_default()
     }
 
     fn certified_mut(&mut self) -> Option<&mut Certified> {
@@ -119,8 +127,42 @@ macro_rules! in_motion {
     ($kind:ident, $rows:ident) => {
         impl $kind {
             /// By that solver, all other choices at their defaults.
-            pub fn by(solver: impl Into<ContinuousSolver>) -> $kind {
+            pub(crate) fn by(solver: impl Into<ContinuousSolver>) -> $kind {
                 $kind { solver: solver.into(), ..$kind::default() }
+            }
+
+            /// The same, with a tolerance: a length from 0.
+            ///
+            /// Features this near may be reported as undecided, and every time is early by at most
+            /// what it takes to move this far. 0 asks for all that the precision gives. By default
+            /// of each pair the smaller of its two bodies' tolerances, 1e-4 of a body's mean edge.
+            /// A query that misses contacts becomes a certain one.
+            #[must_use]
+            pub fn with_tolerance(self, tolerance: f64) -> $kind {
+                self.certainly(Certified { tolerance: Some(tolerance), ..self.solver.or_certified() })
+            }
+
+            /// The same, with a minimum separation: a length from 0. Features that come this near
+            /// are in contact, and times are those of coming so near. A query that misses contacts
+            /// becomes a certain one.
+            #[must_use]
+            pub fn with_min_separation(self, min_separation: f64) -> $kind {
+                self.certainly(Certified { min_separation, ..self.solver.or_certified() })
+            }
+
+            /// The same, with an upper bound of the solver's iterations for a pair, from 1; a pair
+            /// that takes more is reported as undecided. A query that misses contacts becomes a
+            /// certain one.
+            #[must_use]
+            pub fn with_max_iterations(self, max_iterations: u32) -> $kind {
+                self.certainly(Certified {
+                    max_iterations: Some(max_iterations),
+                    ..self.solver.or_certified()
+                })
+            }
+
+            fn certainly(self, certified: Certified) -> $kind {
+                $kind { solver: ContinuousSolver::Certified(certified), ..self }
             }
 
             /// The same, with a start that is taken to be free of crossing triangles, or not.

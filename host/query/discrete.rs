@@ -3,20 +3,20 @@
 use super::{ListedRows, Question, Search, Solver};
 use crate::contacts::TrianglePair;
 
-/// Which triangle pairs share a point at t = 0?
+/// Triangle pairs that share a point at t = 0, by exact signs: none is missed, none is invented.
 ///
 /// ```
-/// use nearmiss::query::{Discrete, Query, TriangleTest};
+/// use nearmiss::Discrete;
 ///
-/// // Triangles that share a vertex too, where they meet beyond it.
-/// let query: Query = Discrete::by(TriangleTest::Exact { adjacent: true }).into();
+/// // Triangles that share a vertex too, if they meet beyond it.
+/// let query = Discrete::default().with_adjacent(true);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Discrete {
     /// The test of a pair.
-    pub test: TriangleTest,
+    pub(crate) test: TriangleTest,
     /// How candidates are found.
-    pub search: Search,
+    pub(crate) search: Search,
 }
 
 /// The test of a pair of triangles that stand still.
@@ -61,8 +61,15 @@ impl TriangleTest {
 
 impl Discrete {
     /// By that test, all other choices at their defaults.
-    pub fn by(test: TriangleTest) -> Discrete {
+    pub(crate) fn by(test: TriangleTest) -> Discrete {
         Discrete { test, ..Discrete::default() }
+    }
+
+    /// The same, with triangles that share a vertex, if they meet beyond it; or without. By exact
+    /// signs.
+    #[must_use]
+    pub const fn with_adjacent(self, adjacent: bool) -> Discrete {
+        Discrete { test: TriangleTest::Exact { adjacent }, ..self }
     }
 }
 

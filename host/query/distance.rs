@@ -21,7 +21,7 @@ use crate::error::Error;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Distance {
     /// How it is searched: it has a walk of its own, [`Traversal::NearestFirst`], and no other.
-    pub search: Search,
+    pub(crate) search: Search,
 }
 
 impl Question for Distance {

@@ -88,12 +88,12 @@ macro_rules! kinds {
         /// benches and the tests.
         ///
         /// ```
-        /// use nearmiss::query::{Bv, Continuous, Precision, ContinuousSolver, Query};
+        /// use nearmiss::{Continuous, Query};
         ///
-        /// // All contacts of a step, certified.
+        /// // All contacts of a step.
         /// let query = Query::continuous();
-        /// // By another solver, and searched with oriented boxes.
-        /// let query = Query::from(Continuous::by(ContinuousSolver::Cubic(Precision::F64))).with_bv(Bv::Obb);
+        /// // Those of coming within a thousandth.
+        /// let query = Query::from(Continuous::default().with_min_separation(1e-3));
         /// ```
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[non_exhaustive]
@@ -114,6 +114,15 @@ macro_rules! kinds {
             }
         })+
 
+        $(impl $kind {
+            /// The same, with tiles or trees rebuilt then.
+            #[must_use]
+            pub const fn with_rebuild(mut self, rebuild: Rebuild) -> $kind {
+                self.search.rebuild = Some(rebuild);
+                self
+            }
+        })+
+
         impl QueryKind {
             /// Whether it asks about t = 0 alone: then the end of a step is not looked at.
             pub fn is_at_rest(self) -> bool {
@@ -122,9 +131,8 @@ macro_rules! kinds {
                 }
             }
 
-            /// Whether it may be searched by more than one walk: else [`Traversal::NearestFirst`](crate::query::Traversal::NearestFirst)
-            /// is the only one.
-            pub fn takes_traversals(self) -> bool {
+            /// Whether it may be searched by more than one walk.
+            pub(crate) fn takes_traversals(self) -> bool {
                 match self {
                     $(QueryKind::$kind => <$kind as Question>::takes_traversals(),)+
                 }
@@ -155,19 +163,19 @@ macro_rules! kinds {
 
             /// Every question with every solver that answers it, all other choices at their defaults: what tests and
             /// `selftest` run over.
-            pub fn every() -> impl Iterator<Item = Query> {
+            pub(crate) fn every() -> std::vec::IntoIter<Query> {
                 let all: [Vec<Query>; [$($name),+].len()] =
                     [$(<$kind as Question>::every().into_iter().map(Query::from).collect()),+];
-                all.into_iter().flatten()
+                all.concat().into_iter()
             }
 
-            fn question(&self) -> &dyn Question {
+            pub(crate) fn question(&self) -> &dyn Question {
                 match self {
                     $(Query::$kind(query) => query,)+
                 }
             }
 
-            fn question_mut(&mut self) -> &mut dyn Question {
+            pub(crate) fn question_mut(&mut self) -> &mut dyn Question {
                 match self {
                     $(Query::$kind(query) => query,)+
                 }

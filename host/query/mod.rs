@@ -1,30 +1,35 @@
-//! What is asked: one value, the same for the library, the command line, the benches and the tests.
+//! Queries, with their accuracy. None misses a contact: solvers that can, and how candidates are found, are
+//! [`research`](crate::research).
 
-mod bv;
-mod certified;
-mod continuous;
-mod discrete;
+pub(crate) mod bv;
+pub(crate) mod certified;
+pub(crate) mod continuous;
+pub(crate) mod discrete;
 mod distance;
-mod kind;
+pub(crate) mod kind;
 mod named;
 mod near;
-mod queues;
-mod search;
-mod solver;
+pub(crate) mod queues;
+pub(crate) mod search;
+pub(crate) mod solver;
 mod typed;
 
-pub use bv::{Bv, WithVolume};
-pub use certified::{Certified, CertifiedPrecision};
-pub use continuous::{Continuous, ContinuousSolver, Earliest, Precision};
-pub use discrete::{Discrete, TriangleTest};
+pub use continuous::{Continuous, Earliest};
+pub use discrete::Discrete;
 pub use distance::Distance;
 pub use named::Named;
 pub(crate) use named::named;
 pub use near::Near;
-pub use queues::{Balance, FrontShape, QueueShape, StealShape};
-pub use search::{Broad, Order, Rebuild, Refit, Search, Traversal};
-pub use solver::Solver;
+pub use search::Rebuild;
 pub use typed::TypedQuery;
+
+pub(crate) use bv::{Bv, WithVolume};
+pub(crate) use certified::{Certified, CertifiedPrecision};
+pub(crate) use continuous::{ContinuousSolver, Precision};
+pub(crate) use discrete::TriangleTest;
+pub(crate) use queues::{Balance, FrontShape, QueueShape, StealShape};
+pub(crate) use search::{Broad, Refit, Search, Traversal};
+pub(crate) use solver::Solver;
 
 use crate::error::Error;
 pub(crate) use kind::ListedRows;
@@ -45,7 +50,7 @@ kinds! {
 
 impl QueryKind {
     /// The solvers that answer it, the default first.
-    pub fn solvers(self) -> Vec<Solver> {
+    pub(crate) fn solvers(self) -> Vec<Solver> {
         Query::every().filter(|query| query.kind() == self).map(|query| query.solver()).collect()
     }
 }
@@ -86,44 +91,24 @@ impl Query {
 
 impl Query {
     /// How candidates are found.
-    pub fn search(&self) -> Search {
+    pub(crate) fn search(&self) -> Search {
         *self.question().search()
     }
 
     /// The same, with candidates found in that way.
-    pub fn with_search(mut self, search: Search) -> Query {
+    pub(crate) fn with_search(mut self, search: Search) -> Query {
         *self.question_mut().search_mut() = search;
         self
     }
 
     /// The same, with that broad phase.
-    pub fn with_broad(self, broad: Broad) -> Query {
+    pub(crate) fn with_broad(self, broad: Broad) -> Query {
         self.with_search(Search { broad: Some(broad), ..self.search() })
-    }
-
-    /// The same, with triangles in tiles in that order.
-    pub fn with_order(self, order: Order) -> Query {
-        self.with_search(Search { order: Some(order), ..self.search() })
     }
 
     /// The same, with tiles or trees made anew then.
     pub fn with_rebuild(self, rebuild: Rebuild) -> Query {
         self.with_search(Search { rebuild: Some(rebuild), ..self.search() })
-    }
-
-    /// The same, with that volume.
-    pub fn with_bv(self, bv: Bv) -> Query {
-        self.with_search(Search { bv: Some(bv), ..self.search() })
-    }
-
-    /// The same, with that refit.
-    pub fn with_refit(self, refit: Refit) -> Query {
-        self.with_search(Search { refit: Some(refit), ..self.search() })
-    }
-
-    /// The same, with that walk.
-    pub fn with_traversal(self, traversal: Traversal) -> Query {
-        self.with_search(Search { traversal: Some(traversal), ..self.search() })
     }
 
     /// Whether the triangle pairs that share a point at the start of the step are counted: of a
@@ -133,37 +118,37 @@ impl Query {
     }
 
     /// The name of the test of a pair.
-    pub fn solver(&self) -> Solver {
+    pub(crate) fn solver(&self) -> Solver {
         self.question().solver()
     }
 
     /// The choices of its certified solver, where it has one.
-    pub fn certified(&self) -> Option<&Certified> {
+    pub(crate) fn certified(&self) -> Option<&Certified> {
         self.question().certified()
     }
 
     /// The same, to change them.
-    pub fn certified_mut(&mut self) -> Option<&mut Certified> {
+    pub(crate) fn certified_mut(&mut self) -> Option<&mut Certified> {
         self.question_mut().certified_mut()
     }
 
     /// The volume that will be used.
-    pub fn bv(&self) -> Bv {
+    pub(crate) fn bv(&self) -> Bv {
         self.search().bv.unwrap_or(Bv::default_for(self.kind()))
     }
 
     /// The broad phase that will be used on a GPU, or on a CPU.
-    pub fn broad_on(&self, is_gpu: bool) -> Broad {
+    pub(crate) fn broad_on(&self, is_gpu: bool) -> Broad {
         if self.kind().takes_traversals() { self.search().broad_on(is_gpu, self.bv()) } else { Broad::Tree }
     }
 
     /// The refit of trees that will be used on a GPU, or on a CPU.
-    pub fn refit_on(&self, is_gpu: bool) -> Refit {
+    pub(crate) fn refit_on(&self, is_gpu: bool) -> Refit {
         self.search().refit.unwrap_or(Refit::default_for(is_gpu))
     }
 
     /// The walk of trees that will be used on a GPU, or on a CPU.
-    pub fn traversal_on(&self, is_gpu: bool) -> Traversal {
+    pub(crate) fn traversal_on(&self, is_gpu: bool) -> Traversal {
         match self.search().traversal {
             Some(traversal) => traversal,
             None if self.kind().takes_traversals() => Traversal::default_for(is_gpu, self.bv()),
@@ -183,7 +168,7 @@ impl Query {
                 advice: "keep that for distances, which have no other; choose another or none".into(),
             });
         }
-        let by_tiles = self.search().broad == Some(Broad::Tiles) || self.search().order.is_some();
+        let by_tiles = self.search().broad == Some(Broad::Tiles);
         if !self.kind().takes_traversals() && by_tiles {
             return Err(Error::InvalidArgument {
                 what: format!("a {} query by tiles", self.kind()),

@@ -15,11 +15,11 @@ pub struct Near {
     /// How far apart two features may be to be listed, a length above 0.
     pub distance: f64,
     /// How candidates are found.
-    pub search: Search,
+    pub(crate) search: Search,
 }
 
 impl Near {
-    /// The distance that [`Query::every`](super::Query::every) asks with.
+    /// The distance of [`QueryExt::every`](crate::research::QueryExt::every).
     pub const DISTANCE: f64 = 1.0 / 64.0;
 
     /// Within that distance, all other choices at their defaults.

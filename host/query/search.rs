@@ -14,8 +14,6 @@ pub struct Search {
     pub refit: Option<Refit>,
     /// The walk of trees; `None` for what is fastest on the machine.
     pub traversal: Option<Traversal>,
-    /// The order of triangles in tiles; `None` for what is fastest.
-    pub order: Option<Order>,
     /// When tiles or trees are built again; `None` for [`Rebuild::Auto`].
     pub rebuild: Option<Rebuild>,
 }
@@ -33,13 +31,7 @@ impl Search {
 
     /// The broad phase of a machine where none was asked for, among those that a query may have.
     pub(super) fn broad_on(&self, is_gpu: bool, bv: Bv) -> Broad {
-        let fastest = if self.is_of_trees() {
-            Broad::Tree
-        } else if self.order.is_some() {
-            Broad::Tiles
-        } else {
-            Broad::default_for(is_gpu, bv)
-        };
+        let fastest = if self.is_of_trees() { Broad::Tree } else { Broad::default_for(is_gpu, bv) };
         self.broad.unwrap_or(fastest)
     }
 
@@ -49,12 +41,6 @@ impl Search {
             return Err(Error::InvalidArgument {
                 what: "tiles with a refit or a traversal of trees".into(),
                 advice: "choose trees, or leave out the refit and the traversal: tiles have one way".into(),
-            });
-        }
-        if self.order.is_some() && (self.broad == Some(Broad::Tree) || self.is_of_trees()) {
-            return Err(Error::InvalidArgument {
-                what: "an order of tiles for trees".into(),
-                advice: "choose tiles, or leave out the order: trees are built along Morton's curve".into(),
             });
         }
         match self.traversal {
@@ -124,23 +110,6 @@ impl Broad {
 }
 
 named! {
-    /// In which order triangles make tiles. Finer cuts cost more to build, and fewer tiles meet.
-    pub enum Order {
-        /// Along Hilbert's curve, body by body.
-        Hilbert = "hilbert",
-        /// Along Hilbert's curve, and each run of 16 tiles in halves of halves, cut across the longest axis.
-        Runs = "runs",
-        /// In halves of halves from all triangles of a body down to tiles.
-        Median = "median",
-    }
-}
-
-impl Order {
-    /// The order where none was asked for (measured, `docs/performance.md`).
-    pub const DEFAULT: Order = Order::Runs;
-}
-
-named! {
     /// When tiles or trees are built again from where the bodies are. No answer depends on it;
     /// hashes of lists between stages may.
     pub enum Rebuild {
@@ -161,8 +130,6 @@ named! {
         Levels = "levels",
         /// One launch for all volumes: a block a subtree, the rest by the block that is done last.
         Treelets = "treelets",
-        /// One launch without barriers: of two siblings, who comes second goes on to their parent.
-        BottomUp = "bottom-up",
     }
 }
 

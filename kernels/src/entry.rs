@@ -19,7 +19,7 @@ use crate::stage::narrow::features::{Moves, Rests};
 use crate::stage::narrow::{
     below_precision, climb, cull, discrete, features, near, nearest, separate, slice, solve,
 };
-use crate::stage::refit::{bottom_up, levels, tiles as refit_of_tiles, treelets};
+use crate::stage::refit::{levels, tiles as refit_of_tiles, treelets};
 use crate::stage::traverse::{
     front, nearest as nearest_first, per_leaf, queue, steal, tile_triangles, tiles as tile_pairs,
 };
@@ -222,7 +222,7 @@ macro_rules! kernels_of_precisions {
 
 /// From the list of volumes makes their names and PTX entries, and the table of all kernels.
 macro_rules! table {
-    ($($Volume:ident = $volume:literal [$($groups:ident)?] { $($choices:tt)* })*) => {
+    ($($Volume:ident = $volume:literal [$($groups:ident)?], $about:literal;)*) => {
         $(
             impl Kernels for bv::$Volume {
                 const NAME: &'static str = $volume;
@@ -289,10 +289,6 @@ kernels! {
     construct_bounds_f64: morton::bounds::<f64, B>, [MortonArgs<f64>], WIDE, centres::shared_bytes(WIDE);
     construct_morton_f32: morton::morton::<f32, B>, [MortonArgs<f32>], WIDE, 0;
     construct_morton_f64: morton::morton::<f64, B>, [MortonArgs<f64>], WIDE, 0;
-    construct_halves_bounds_f32: cuts::halves_bounds::<f32, B>, [CutArgs<f32>], WIDE, centres::shared_bytes(WIDE);
-    construct_halves_bounds_f64: cuts::halves_bounds::<f64, B>, [CutArgs<f64>], WIDE, centres::shared_bytes(WIDE);
-    construct_halves_f32: cuts::halves::<f32, B>, [CutArgs<f32>], WIDE, 0;
-    construct_halves_f64: cuts::halves::<f64, B>, [CutArgs<f64>], WIDE, 0;
     construct_runs_f32: cuts::runs::<f32, B>, [CutArgs<f32>], cuts::LANES, cuts::shared_bytes(cuts::LANES);
     construct_runs_f64: cuts::runs::<f64, B>, [CutArgs<f64>], cuts::LANES, cuts::shared_bytes(cuts::LANES);
     construct_tree: tree::tree, [TreeArgs], WIDE, 0;
@@ -366,7 +362,6 @@ kernels_of_volumes! {
     both {
         construct_graft: graft::graft::<V, B>, [GraftArgs<V>], WIDE, 0;
         refit_levels: levels::levels::<V, B>, [RefitArgs<V>], WIDE, 0;
-        refit_bottom_up: bottom_up::bottom_up::<V, B>, [BottomUpArgs<V>], WIDE, 0;
         traverse_leaves: per_leaf::leaves::<V, B>, [TraverseArgs<V>], NARROW, per_leaf::shared_bytes(NARROW);
         traverse_units: per_leaf::units::<V, B>, [TraverseArgs<V>], NARROW, per_leaf::shared_bytes(NARROW);
         traverse_within: nearest_first::within::<V, B>, [TraverseArgs<V>], NARROW, per_leaf::shared_bytes(NARROW);

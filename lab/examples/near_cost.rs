@@ -7,7 +7,7 @@
 
 use nearmiss::device::Backend;
 use nearmiss::mesh::Body;
-use nearmiss::pipeline::{Stages, mean_side};
+use nearmiss::research::pipeline::{Stages, mean_side};
 use nearmiss::{Device, Error, Query};
 use nearmiss_io::MeshFile;
 use nearmiss_lab::OneQuery;

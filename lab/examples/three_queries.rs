@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let backend = if backend == "cuda" { Backend::Cuda } else { Backend::Cpu };
     let mesh = |path: &str| MeshFile::read(Path::new(path)).map(MeshFile::into_mesh);
     let body = Body::moving(mesh(t0)?, mesh(t1)?)?;
-    let side = nearmiss::pipeline::mean_side(std::slice::from_ref(&body));
+    let side = nearmiss::research::pipeline::mean_side(std::slice::from_ref(&body));
     let queries = [Query::near(0.1 * side), Query::earliest(), Query::discrete()];
     println!("detectors,wait_ms,bytes,uploaded,hashes");
     for count in [1, queries.len()] {

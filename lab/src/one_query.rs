@@ -2,6 +2,7 @@
 
 use nearmiss::contacts::DeviceAnswer;
 use nearmiss::device::Device;
+use nearmiss::research::{DetectorExt, QueryExt};
 use nearmiss::scene::BodyId;
 use nearmiss::scene::{DeviceMotion, Motion};
 use nearmiss::{Body, Contacts, Detector, DeviceShare, Error, MultiDetector, Query, Scene, Stage, plan};
@@ -157,13 +158,13 @@ impl OneQuery {
 
     /// Returns the smallest tolerance of the query's pairs; `None` without a certified solver.
     pub fn tolerance(&mut self) -> Option<f64> {
-        let certified = *self.query.certified()?;
+        let certified = self.query.certified()?;
         Some(certified.tolerance.unwrap_or_else(|| self.detector.tolerance()))
     }
 
     /// Returns the largest tolerance of the query's pairs; `None` without a certified solver.
     pub fn largest_tolerance(&mut self) -> Option<f64> {
-        let certified = *self.query.certified()?;
+        let certified = self.query.certified()?;
         Some(certified.tolerance.unwrap_or_else(|| self.detector.largest_tolerance()))
     }
 }

@@ -13,6 +13,7 @@ use crate::scene::{Body, Scene};
 use crate::turns::python;
 use crate::watch::watched;
 use nearmiss::Interrupt;
+use nearmiss::research::DetectorExt;
 use nearmiss::scene::BodyId;
 use nearmiss::words::counted;
 use pyo3::prelude::*;

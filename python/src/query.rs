@@ -2,7 +2,8 @@
 
 use crate::errors::{choice, optional, raised};
 use crate::research;
-use nearmiss::query::{self, Certified, TriangleTest};
+use nearmiss::query;
+use nearmiss::research::{Certified, QueryExt, TriangleTest, WithSolver};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple, PyType};
 
@@ -67,7 +68,7 @@ impl Query {
         let numbers = PyDict::new(py);
         match &self.query {
             nearmiss::Query::Discrete(discrete)
-                if discrete.test == TriangleTest::Exact { adjacent: true } =>
+                if discrete.chosen() == TriangleTest::Exact { adjacent: true } =>
             {
                 numbers.set_item("adjacent", true)?;
             }
@@ -172,7 +173,7 @@ pub fn iterations_of(given: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
 }
 
 pub fn discrete(adjacent: bool) -> PyResult<nearmiss::Query> {
-    checked(query::Discrete::by(TriangleTest::Exact { adjacent }))
+    checked(query::Discrete::default().with_adjacent(adjacent))
 }
 
 pub fn near(distance: f64) -> PyResult<nearmiss::Query> {

@@ -2,8 +2,9 @@
 
 use crate::errors::{choice, named, one_of};
 use crate::query::{Query, as_python, checked, set};
-use nearmiss::query::{
-    Broad, Bv, Certified, ContinuousSolver, Named, Order, Rebuild, Search, Solver, TriangleTest,
+use nearmiss::query::{Named, Rebuild};
+use nearmiss::research::{
+    Broad, Bv, Certified, ContinuousSolver, KindExt, QueryExt, Search, Solver, TriangleTest, WithSolver,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -18,19 +19,17 @@ use pyo3::types::PyDict;
 ///   "cubic-f32", which can miss contacts and take neither a tolerance nor a minimum separation.
 /// - `broad_phase`: "tiles" or "tree".
 /// - `bounding_volume`: volume of a triangle, "aabb" or "linear"; "obb" of trees.
-/// - `order`: order of triangles in tiles.
 /// - `rebuild`: "auto" rebuilds tiles and trees when their boxes have become loose; "manual" does
 ///   so by Detector.rebuild alone.
 ///
 /// Raises InvalidArgumentError for choices that do not exist or exclude each other.
 #[pyfunction]
-#[pyo3(signature = (query, *, solver = None, broad_phase = None, bounding_volume = None, order = None, rebuild = None))]
+#[pyo3(signature = (query, *, solver = None, broad_phase = None, bounding_volume = None, rebuild = None))]
 pub fn configure<'py>(
     query: &Bound<'py, Query>,
     solver: Option<&str>,
     broad_phase: Option<&str>,
     bounding_volume: Option<&str>,
-    order: Option<&str>,
     rebuild: Option<&str>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let own = query.get().query;
@@ -39,7 +38,6 @@ pub fn configure<'py>(
     let search = Search {
         broad: chosen::<Broad>("broad_phase", broad_phase)?.or(before.broad),
         bv: chosen::<Bv>("bounding_volume", bounding_volume)?.or(before.bv),
-        order: chosen::<Order>("order", order)?.or(before.order),
         rebuild: rebuild.map(rebuild_of).transpose()?.or(before.rebuild),
         ..before
     };
@@ -72,7 +70,7 @@ fn by_solver(mut query: nearmiss::Query, name: &str) -> PyResult<nearmiss::Query
     let moving = ContinuousSolver::named(solver);
     match (&mut query, moving) {
         (nearmiss::Query::Discrete(discrete), _) => {
-            discrete.test = match (solver, discrete.test) {
+            let test = match (solver, discrete.chosen()) {
                 (Solver::Moller, TriangleTest::Exact { adjacent: true }) => {
                     return Err(choice("solver \"moller\" cannot test adjacent triangles", "use \"exact\""));
                 }
@@ -80,12 +78,13 @@ fn by_solver(mut query: nearmiss::Query, name: &str) -> PyResult<nearmiss::Query
                 (_, TriangleTest::Exact { adjacent }) => TriangleTest::Exact { adjacent },
                 _ => TriangleTest::default(),
             };
+            *discrete = discrete.with_solver(test);
         }
         (nearmiss::Query::Continuous(continuous), Some(by)) => {
-            continuous.solver = keeping(continuous.solver, by, name)?;
+            *continuous = continuous.with_solver(keeping(continuous.chosen(), by, name)?);
         }
         (nearmiss::Query::Earliest(earliest), Some(by)) => {
-            earliest.solver = keeping(earliest.solver, by, name)?;
+            *earliest = earliest.with_solver(keeping(earliest.chosen(), by, name)?);
         }
         _ => {}
     }
@@ -110,11 +109,11 @@ fn keeping(before: ContinuousSolver, by: ContinuousSolver, name: &str) -> PyResu
 pub fn without(query: nearmiss::Query) -> nearmiss::Query {
     let mut query = query.with_search(Search::default());
     match &mut query {
-        nearmiss::Query::Discrete(discrete) if discrete.test == TriangleTest::Moller => {
-            discrete.test = TriangleTest::default();
+        nearmiss::Query::Discrete(discrete) if discrete.chosen() == TriangleTest::Moller => {
+            *discrete = discrete.with_solver(TriangleTest::default());
         }
-        nearmiss::Query::Continuous(continuous) => continuous.solver = usual(continuous.solver),
-        nearmiss::Query::Earliest(earliest) => earliest.solver = usual(earliest.solver),
+        nearmiss::Query::Continuous(own) => *own = own.with_solver(usual(own.chosen())),
+        nearmiss::Query::Earliest(own) => *own = own.with_solver(usual(own.chosen())),
         _ => {}
     }
     query
@@ -133,7 +132,6 @@ pub fn choices<'py>(py: Python<'py>, query: &nearmiss::Query) -> PyResult<Bound<
     let search = query.search();
     set(&choices, "broad_phase", search.broad.map(|broad| broad.name()))?;
     set(&choices, "bounding_volume", search.bv.map(|bv| bv.name()))?;
-    set(&choices, "order", search.order.map(|order| order.name()))?;
     let rebuild = search.rebuild.and_then(|rebuild| REBUILDS.iter().find(|(_, own)| *own == rebuild));
     set(&choices, "rebuild", rebuild.map(|(name, _)| *name))?;
     Ok(choices)

@@ -48,7 +48,7 @@ fn a_volume_is_a_file_and_an_entry_of_a_list() {
     let sources = serves_volumes();
     for volume in VOLUMES {
         assert_eq!(knows_a_volume(volume, &sources), NONE);
-        assert_eq!(names(volume, &sources).len(), 3, "what it is used by, its entry, and its choice");
+        assert_eq!(names(volume, &sources).len(), 2, "what it is used by, and its entry");
     }
 }
 

@@ -4,6 +4,7 @@
 mod book;
 mod choices;
 mod comments;
+mod doors;
 mod figures;
 mod licences;
 mod package;

@@ -1,7 +1,8 @@
 //! Scenes that go on: the same bits always, and free of intersections where that was asked.
 
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Discrete, TriangleTest};
+use nearmiss::query::Discrete;
+use nearmiss::research::{TriangleTest, WithSolver};
 use nearmiss::{Error, Query};
 use nearmiss_lab::scene::{self, ANIMATIONS, Animation, Options, animation, animation_with};
 use support::{ask, engine};

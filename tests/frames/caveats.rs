@@ -2,7 +2,8 @@
 
 use nearmiss::contacts::{Caveat, Contact, Status};
 use nearmiss::mesh::{Body, Mesh};
-use nearmiss::query::{FrontShape, QueryKind, Solver, Traversal};
+use nearmiss::query::QueryKind;
+use nearmiss::research::{DetectorExt, FrontShape, QueryExt, Solver, Traversal};
 use nearmiss::{Contacts, Device, Error, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;

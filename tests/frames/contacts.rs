@@ -3,7 +3,8 @@
 use nearmiss::Contacts;
 use nearmiss::contacts::{Kind, Status};
 use nearmiss::mesh::{Body, Topology};
-use nearmiss::query::{Bv, QueryKind, Solver};
+use nearmiss::query::QueryKind;
+use nearmiss::research::{Bv, QueryExt, Solver};
 use support::asked::by;
 use support::truth::frames::{BALLS, CLOTH, Row, Scene, difference, found, later};
 use support::{ask, engine};

@@ -8,7 +8,8 @@ mod law;
 use nearmiss::contacts::{Caveat, Status};
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Broad, Bv, Order, QueryKind, Search, Solver};
+use nearmiss::query::QueryKind;
+use nearmiss::research::{Broad, Bv, QueryExt, Solver};
 use nearmiss::{Contacts, Device, Query};
 use nearmiss_kernels::abi::earliest;
 use nearmiss_lab::OneQueryOnSeveral;
@@ -120,11 +121,8 @@ fn fault(way: &str, wanted: First, said: First) -> Option<String> {
 fn ways(query: Query, all: bool) -> Vec<(String, Device, Query)> {
     let threads = |n| Device::emulator(Emulator::new(Mode::Engine, Some(n)).expect("threads"));
     let mut ways = Vec::new();
-    for order in [Order::Hilbert, Order::Runs, Order::Median] {
-        for n in [1, 2, 4] {
-            let search = Search { order: Some(order), broad: Some(Broad::Tiles), ..Search::default() };
-            ways.push((format!("{order:?}, {n} threads"), threads(n), query.with_search(search)));
-        }
+    for n in [1, 2, 4] {
+        ways.push((format!("{n} threads"), threads(n), query.with_broad(Broad::Tiles)));
     }
     for bv in Bv::ALL {
         for broad in [Broad::Tiles, Broad::Tree] {

@@ -3,7 +3,8 @@
 
 use nearmiss::contacts::{Contact, Status};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Bv, QueryKind, Solver};
+use nearmiss::query::QueryKind;
+use nearmiss::research::{Bv, QueryExt, Solver};
 use nearmiss::{Contacts, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;

@@ -4,7 +4,8 @@
 use nearmiss::contacts::Status;
 use nearmiss::device::Backend;
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{QueryKind, Solver};
+use nearmiss::query::QueryKind;
+use nearmiss::research::Solver;
 use nearmiss::{Contacts, Device, Query};
 use nearmiss_lab::OneQuery;
 use std::time::Instant;

@@ -7,7 +7,8 @@ mod volumes;
 
 use nearmiss::contacts::{Contact, Kind, Status};
 use nearmiss::mesh::{Body, Mesh, Positions, Topology};
-use nearmiss::query::{Bv, QueryKind};
+use nearmiss::query::QueryKind;
+use nearmiss::research::{Bv, QueryExt};
 use nearmiss::{Contacts, Query};
 use nearmiss_lab::scene::{self, Rng};
 use std::collections::BTreeMap;

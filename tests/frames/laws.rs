@@ -7,6 +7,7 @@ mod others;
 use nearmiss::contacts::{Caveat, Contact, NearPair, TrianglePair};
 use nearmiss::mesh::Positions;
 use nearmiss::query::QueryKind;
+use nearmiss::research::QueryExt;
 use nearmiss::scene::{BodyId, BodyKind, CollisionFilter, Motion, Pose, Scene};
 use nearmiss::{Body, Contacts, Mesh, Query};
 use nearmiss_lab::OneQuery;

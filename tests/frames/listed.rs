@@ -4,7 +4,8 @@
 
 use nearmiss::contacts::{Kind, Status};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Bv, Certified, Continuous, Solver};
+use nearmiss::query::Continuous;
+use nearmiss::research::{Bv, Certified, QueryExt, Solver, WithSolver};
 use nearmiss::{Contacts, Query};
 use nearmiss_io::MeshFile;
 use nearmiss_kernels::prim::cubic::Moving;

@@ -1,7 +1,7 @@
 //! Hard scenes, whose launches and blocks are long: they end soon after a trigger all the same.
 
 use super::threads;
-use nearmiss::query::Broad;
+use nearmiss::research::{Broad, QueryExt};
 use nearmiss::{Body, Error, Query};
 use nearmiss_lab::OneQuery;
 use std::time::{Duration, Instant};

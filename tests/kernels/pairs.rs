@@ -1,7 +1,8 @@
 //! Single questions: the answers of the solvers themselves, in the cases' order, on every machine and in every storage.
 
 use nearmiss::contacts::Status;
-use nearmiss::query::{Discrete, QueryKind, Solver, TriangleTest};
+use nearmiss::query::{Discrete, QueryKind};
+use nearmiss::research::{Solver, TriangleTest, WithSolver};
 use nearmiss::{Error, Query};
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};

@@ -4,7 +4,8 @@ mod shapes;
 
 use nearmiss::contacts::TrianglePair;
 use nearmiss::mesh::{Body, Positions};
-use nearmiss::query::{Broad, Bv, Discrete, Query, Search, TriangleTest};
+use nearmiss::query::{Discrete, Query};
+use nearmiss::research::{Broad, Bv, QueryExt, Search, TriangleTest, WithSolver};
 use nearmiss::scene::{CollisionFilter, Motion, Scene};
 use nearmiss::{Contacts, Rows};
 use nearmiss_lab::OneQuery;

@@ -2,7 +2,8 @@
 
 use nearmiss::contacts::{ContactGeometry, Contacts, Kind, Rows};
 use nearmiss::mesh::Positions;
-use nearmiss::query::{Certified, Continuous};
+use nearmiss::query::Continuous;
+use nearmiss::research::{Certified, WithSolver};
 use nearmiss::scene::{
     BodyId, BodyKind, CollisionFilter, DeviceMotion, DeviceRows, Motion, Number, Pose, Scene,
 };

@@ -3,7 +3,8 @@
 use nearmiss::contacts::Contacts;
 use nearmiss::device::Device;
 use nearmiss::mesh::Positions;
-use nearmiss::query::{Certified, Continuous};
+use nearmiss::query::Continuous;
+use nearmiss::research::{Certified, DetectorExt, QueryExt, WithSolver};
 use nearmiss::scene::{BodyId, CollisionFilter, DeviceMotion, DeviceRows, Motion, Number, Pose, Scene};
 use nearmiss::{Body, Detector, Discrete, Earliest, Near, Query};
 use nearmiss_lab::scene;
@@ -22,7 +23,7 @@ fn queries() -> Vec<Query> {
         Near::within(0.11).into(),
         Continuous::by(apart).into(),
         Query::distance(),
-        Query::discrete().with_broad(nearmiss::query::Broad::Tree),
+        Query::discrete().with_broad(nearmiss::research::Broad::Tree),
     ]
 }
 

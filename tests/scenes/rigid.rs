@@ -7,6 +7,7 @@ mod far;
 mod rests;
 
 use nearmiss::mesh::Positions;
+use nearmiss::research::QueryExt;
 use nearmiss::scene::{BodyId, CollisionFilter, Motion, Pose, Scene};
 use nearmiss::{Body, Contacts, Mesh, Query};
 use nearmiss_lab::OneQuery;

@@ -1,7 +1,8 @@
 //! A scene that is divided among devices: the answer of one, to the bit, however it is divided.
 
 use nearmiss::mesh::Body;
-use nearmiss::query::{Broad, Bv, Query, QueryKind};
+use nearmiss::query::{Query, QueryKind};
+use nearmiss::research::{Broad, Bv, QueryExt};
 use nearmiss::scene::{BodyId, CollisionFilter, Motion, Scene};
 use nearmiss::{Contacts, Device};
 use nearmiss_lab::scene::{self, Bodies};

@@ -1,7 +1,8 @@
 //! Frames whose lists outgrow the memory: asked slice by slice, with the answer of a whole one, while bodies move, come and go, and on
 //! several devices.
 
-use nearmiss::query::{Broad, Query, QueryKind};
+use nearmiss::query::{Query, QueryKind};
+use nearmiss::research::{Broad, QueryExt};
 use nearmiss::scene::CollisionFilter;
 use nearmiss::{Contacts, Device};
 use nearmiss_lab::scene::{self, Bodies};

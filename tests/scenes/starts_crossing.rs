@@ -4,7 +4,8 @@
 use nearmiss::contacts::{Contacts, Note, Rows};
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::Positions;
-use nearmiss::query::{Certified, Continuous, Discrete, Earliest, QueryKind, TriangleTest};
+use nearmiss::query::{Continuous, Discrete, Earliest, QueryKind};
+use nearmiss::research::{Certified, QueryExt, TriangleTest, WithSolver};
 use nearmiss::scene::{BodyId, BodyKind, CollisionFilter, Motion, Pose, Scene};
 use nearmiss::{Body, Device, Mesh, Query};
 use nearmiss_lab::scene;

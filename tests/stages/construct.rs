@@ -2,7 +2,7 @@
 
 use nearmiss::Query;
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::Broad;
+use nearmiss::research::{Broad, QueryExt};
 use nearmiss::scene::CollisionFilter;
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;

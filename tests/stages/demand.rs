@@ -1,7 +1,8 @@
 //! Answers without room are refused by their count: early, with the number, and with a way out.
 
 use nearmiss::device::Interrupt;
-use nearmiss::query::{Broad, Certified, Continuous};
+use nearmiss::query::Continuous;
+use nearmiss::research::{Broad, Certified, QueryExt, WithSolver};
 use nearmiss::scene::CollisionFilter;
 use nearmiss::{Body, Device, Error, Query};
 use nearmiss_lab::OneQuery;

@@ -2,7 +2,8 @@
 
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Bv, FrontShape, QueryKind, QueueShape, Search, Traversal};
+use nearmiss::query::QueryKind;
+use nearmiss::research::{Bv, FrontShape, QueryExt, QueueShape, Search, StatsExt, Traversal};
 use nearmiss::{Device, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
@@ -107,14 +108,14 @@ fn where_nothing_moves_about_half_of_the_tests_are_saved() {
     let first = detector.detect().expect("an answer");
     let second = detector.detect().expect("an answer");
     assert_eq!(
-        (first.stats.front.tests, second.stats.steps),
+        (first.stats.front().tests, second.stats.steps),
         (0, 0),
         "from the roots, then from the front alone"
     );
-    assert_eq!(second.stats.front.tests, first.stats.front.pairs);
-    assert_eq!(second.stats.front.pairs, first.stats.front.pairs);
+    assert_eq!(second.stats.front().tests, first.stats.front().pairs);
+    assert_eq!(second.stats.front().pairs, first.stats.front().pairs);
     assert_eq!(first.hash(), second.hash());
-    let saved = 1.0 - second.stats.front.tests as f64 / (2 * first.stats.steps) as f64;
+    let saved = 1.0 - second.stats.front().tests as f64 / (2 * first.stats.steps) as f64;
     assert!((0.4..0.55).contains(&saved), "{saved}");
 }
 
@@ -130,7 +131,7 @@ fn a_front_that_grew_is_pruned_back() {
             .iter()
             .map(|frame| {
                 detector.move_to(0, frame.clone()).expect("the same mesh");
-                detector.detect().expect("an answer").stats.front.pairs
+                detector.detect().expect("an answer").stats.front().pairs
             })
             .collect()
     };
@@ -151,7 +152,7 @@ fn a_rebuild_forgets_the_front() {
         detector.move_to(0, frame.clone()).expect("the same mesh");
         detector.rebuild().expect("a tree");
         let contacts = detector.detect().expect("an answer");
-        assert_eq!(contacts.stats.front.tests, 0, "nothing was kept");
+        assert_eq!(contacts.stats.front().tests, 0, "nothing was kept");
         let plain = query(QueryKind::Discrete, Bv::Aabb, None);
         assert_eq!(answers(&device, plain, std::slice::from_ref(frame), None)[0].0, contacts.hash());
     }

@@ -1,7 +1,8 @@
-//! In which order triangles make tiles, and when they are put in order anew: nothing of it changes an answer, and finer cuts meet fewer.
+//! The order of triangles in tiles, and when it is made again: neither changes an answer.
 
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Broad, Order, Query, QueryKind, Rebuild, Search};
+use nearmiss::query::{Query, QueryKind, Rebuild};
+use nearmiss::research::{Broad, QueryExt};
 use nearmiss::scene::{CollisionFilter, Motion, Scene};
 use nearmiss_lab::{OneQuery, OneQueryOnSeveral};
 
@@ -28,7 +29,7 @@ fn uneven(n: usize, every: usize) -> Mesh {
 }
 
 #[test]
-fn every_order_has_the_same_answer() {
+fn tiles_and_trees_have_the_same_answer() {
     let scenes: [Scene; 4] = [
         scene::scene("cloth-ball", 9_000, 1).expect("cloth").into(),
         scene::Bodies::pile(30, 20, 12).expect("a pile").scene,
@@ -38,13 +39,11 @@ fn every_order_has_the_same_answer() {
     for scene in scenes {
         for query in queries() {
             let truth = ask_scene(engine(), scene.clone(), query.with_broad(Broad::Tree));
-            for order in Order::ALL {
-                let query = query.with_order(order);
-                let mut detector = OneQuery::new(engine(), scene.clone(), query).expect("a detector");
-                let found = detector.detect().expect("an answer");
-                detector.check_volumes().expect("each triangle once, in volumes that hold it");
-                assert_eq!((&found.rows, found.hash()), (&truth.rows, truth.hash()), "{query:?}");
-            }
+            let query = query.with_broad(Broad::Tiles);
+            let mut detector = OneQuery::new(engine(), scene.clone(), query).expect("a detector");
+            let found = detector.detect().expect("an answer");
+            detector.check_volumes().expect("each triangle once, in volumes that hold it");
+            assert_eq!((&found.rows, found.hash()), (&truth.rows, truth.hash()), "{query:?}");
         }
     }
 }
@@ -52,11 +51,9 @@ fn every_order_has_the_same_answer() {
 #[test]
 fn every_machine_has_the_same_order() {
     let pile = scene::Bodies::pile(3, 20, 12).expect("a pile").scene;
-    for (scene, order) in [pile, Body::deformable(uneven(1_200, 100)).into()]
-        .into_iter()
-        .flat_map(|scene: Scene| Order::ALL.map(|order| (scene.clone(), order)))
-    {
-        let query = Query::discrete().with_order(order);
+    let scenes: [Scene; 2] = [pile, Body::deformable(uneven(1_200, 100)).into()];
+    for scene in scenes {
+        let query = Query::discrete().with_broad(Broad::Tiles);
         let left = |device| {
             let mut detector = OneQuery::new(device, scene.clone(), query).expect("a detector");
             detector.detect().expect("an answer");
@@ -64,21 +61,7 @@ fn every_machine_has_the_same_order() {
         };
         let truth = left(engine());
         for device in ORDERS.map(sanitizer).into_iter().chain(machines()) {
-            assert_eq!(left(device), truth, "{order:?}");
-        }
-    }
-}
-
-#[test]
-fn finer_cuts_meet_fewer() {
-    for body in [scene::draped(40_000), scene::scene("cloth-ball", 40_000, 1)] {
-        let body = body.expect("cloth");
-        for kind in [QueryKind::Discrete, QueryKind::Continuous] {
-            let tests = Order::ALL.map(|order| {
-                ask_scene(engine(), body.clone(), asked::of(kind).with_order(order)).stats.steps
-            });
-            println!("{kind:?}: {tests:?}");
-            assert!(tests.is_sorted_by(|coarse, fine| coarse > fine), "{:?}: {tests:?}", Order::ALL);
+            assert_eq!(left(device), truth);
         }
     }
 }
@@ -97,22 +80,13 @@ fn outsized_triangles_have_tiles_of_their_own() {
     let mut scene = Scene::new();
     scene.add(of(false));
     scene.add(of(true));
-    for order in Order::ALL {
-        let query = Query::discrete().with_order(order);
-        let together = ask_scene(engine(), Body::deformable(mesh.clone()), query);
-        let apart = ask_scene(engine(), scene.clone(), query);
-        println!("{order:?}: {} tests together, {} apart", together.stats.steps, apart.stats.steps);
-        assert_eq!(
-            (together.len(), together.stats.triangle_pairs),
-            (apart.len(), apart.stats.triangle_pairs)
-        );
-        assert!(
-            together.stats.steps < apart.stats.steps + apart.stats.steps / 4,
-            "{} {}",
-            together.stats.steps,
-            apart.stats.steps
-        );
-    }
+    let query = Query::discrete().with_broad(Broad::Tiles);
+    let together = ask_scene(engine(), Body::deformable(mesh.clone()), query);
+    let apart = ask_scene(engine(), scene, query);
+    let tests = [together.stats.steps, apart.stats.steps];
+    println!("{tests:?} tests together and apart");
+    assert_eq!((together.len(), together.stats.triangle_pairs), (apart.len(), apart.stats.triangle_pairs));
+    assert!(tests[0] < tests[1] + tests[1] / 4, "{tests:?}");
 }
 
 /// Points that go to places far from each other, so that what was in order no longer is.
@@ -212,17 +186,4 @@ fn devices_make_their_tiles_together() {
     several.replace(id, &start).expect("there");
     one.replace(id, start).expect("there");
     assert_eq!(several.detect().expect("an answer").rows, one.detect().expect("an answer").rows);
-}
-
-#[test]
-fn an_order_is_of_tiles() {
-    let by = |search| Query::discrete().with_search(search);
-    let order = Some(Order::Median);
-    let error = by(Search { broad: Some(Broad::Tree), order, ..Search::default() }).check();
-    assert!(error.expect_err("trees have their own").to_string().contains("tiles"));
-    assert_eq!(
-        by(Search { order, bv: Some(nearmiss::query::Bv::Obb), ..Search::default() }).broad_on(true),
-        Broad::Tiles
-    );
-    assert!(Query::distance().with_order(Order::Runs).check().is_err());
 }

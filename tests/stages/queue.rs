@@ -6,7 +6,8 @@ mod sizes;
 mod words;
 
 use nearmiss::mesh::Body;
-use nearmiss::query::{Bv, QueryKind, QueueShape, StealShape, Traversal};
+use nearmiss::query::QueryKind;
+use nearmiss::research::{Bv, QueryExt, QueueShape, StealShape, Traversal};
 use nearmiss::{Contacts, Device, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;

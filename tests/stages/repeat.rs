@@ -1,9 +1,9 @@
 //! One stage again and again: the detector answers afterwards as if nothing had happened.
 
+use nearmiss::Stage;
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::Body;
-use nearmiss::pipeline::Stage;
-use nearmiss::query::Refit;
+use nearmiss::research::{QueryExt, Refit};
 use nearmiss::{Device, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
@@ -83,7 +83,7 @@ fn every_way_to_refit_can_be_repeated() {
     let body = scene::scene("cloth-ball", 500, 3).expect("a scene");
     let mut hashes = Vec::new();
     for device in [engine(), sanitizer()] {
-        for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
+        for refit in [Refit::Levels, Refit::Treelets] {
             let query = Query::discrete().with_refit(refit);
             let mut detector = OneQuery::new(device.clone(), vec![body.clone()], query).expect("a detector");
             detector.move_to(0, later(&body)).expect("moved");

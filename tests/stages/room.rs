@@ -2,7 +2,8 @@
 
 use nearmiss::device::emulator::Order;
 use nearmiss::mesh::Body;
-use nearmiss::query::{Discrete, QueryKind, Traversal, TriangleTest};
+use nearmiss::query::{Discrete, QueryKind};
+use nearmiss::research::{QueryExt, Traversal, TriangleTest, WithSolver};
 use nearmiss::{Contacts, Device, Error, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;

@@ -1,7 +1,8 @@
 //! Tiles find what trees find: candidate for candidate where boxes nest, and the same contacts always.
 
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Broad, Bv, Distance, Query, QueryKind, Refit, Search, Traversal};
+use nearmiss::query::{Distance, Query, QueryKind};
+use nearmiss::research::{Broad, Bv, QueryExt, Refit, Search, Traversal};
 use nearmiss::scene::Scene;
 use nearmiss::{Contacts, Device};
 use nearmiss_lab::OneQuery;
@@ -153,7 +154,7 @@ fn tiles_are_chosen_unless_something_of_trees_is() {
         assert!(error.to_string().contains("leave out the refit and the traversal"), "{error}");
         by(Search { broad: Some(Broad::Tree), ..search }).check().expect("trees have many");
     }
-    let nearest = Distance { search: Search { broad: Some(Broad::Tiles), ..Search::default() } };
+    let nearest = Distance::default().with_broad(Broad::Tiles);
     let error = Query::from(nearest).check().expect_err("a distance goes down a tree").to_string();
     assert!(error.contains("the nearest is sought down a tree"), "{error}");
 }

@@ -4,7 +4,8 @@ use super::choice;
 use super::number::{some, whole};
 use clap::{Args, ValueEnum};
 use nearmiss::Stage;
-use nearmiss::query::{Broad, Bv, FrontShape, QueueShape, Rebuild, Refit, Solver, StealShape, Traversal};
+use nearmiss::query::Rebuild;
+use nearmiss::research::{Broad, Bv, FrontShape, QueueShape, Refit, Solver, StealShape, Traversal};
 
 /// Walks of a tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

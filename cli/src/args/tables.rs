@@ -4,7 +4,7 @@ use super::number::{some, whole};
 use super::{MachineArgs, RESEARCH, ReportArgs, choice, help};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
-use nearmiss::query::{Bv, QueueShape, Traversal};
+use nearmiss::research::{Bv, QueueShape, Traversal};
 use nearmiss_lab::tables::SCENES;
 use std::path::PathBuf;
 

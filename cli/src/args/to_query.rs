@@ -3,10 +3,11 @@
 use super::DetectArgs;
 use crate::report::Format;
 use nearmiss::error::Error;
-use nearmiss::query::{
-    Certified, Continuous, ContinuousSolver, Discrete, Distance, Earliest, Near, Query, QueryKind, Rebuild,
-    Search, Solver, TriangleTest,
-};
+use nearmiss::query::{Continuous, Discrete, Earliest, Query, QueryKind, Rebuild};
+use nearmiss::research::KindExt;
+use nearmiss::research::QueryExt;
+use nearmiss::research::WithSolver;
+use nearmiss::research::{Certified, ContinuousSolver, Search, Solver, TriangleTest};
 use nearmiss::scene::CollisionFilter;
 
 fn refused<T>(what: impl Into<String>, advice: impl Into<String>) -> Result<T, Error> {
@@ -55,25 +56,18 @@ impl DetectArgs {
 
     /// The query of a kind.
     fn of_kind(&self, kind: QueryKind, solver: Solver) -> Query {
-        let search = self.search();
-        match (self.query.near, ContinuousSolver::named(solver)) {
-            _ if self.query.distance => Distance { search }.into(),
-            (Some(distance), _) => Near { distance, search }.into(),
-            (None, Some(solver)) => {
-                let (solver, assume_free) = (self.limited(solver), self.query.assume_free);
-                if kind == QueryKind::Earliest {
-                    Earliest { solver, search, assume_free }.into()
-                } else {
-                    Continuous { solver, search, assume_free }.into()
-                }
+        let assume_free = self.query.assume_free;
+        let query: Query = match (self.query.near, ContinuousSolver::named(solver)) {
+            _ if self.query.distance => Query::distance(),
+            (Some(distance), _) => Query::near(distance),
+            (None, Some(solver)) if kind == QueryKind::Earliest => {
+                Earliest::by(self.limited(solver)).assuming_free(assume_free).into()
             }
-            (None, None) if solver == Solver::Moller => {
-                Discrete { test: TriangleTest::Moller, search }.into()
-            }
-            (None, None) => {
-                Discrete { test: TriangleTest::Exact { adjacent: self.query.adjacent }, search }.into()
-            }
-        }
+            (None, Some(solver)) => Continuous::by(self.limited(solver)).assuming_free(assume_free).into(),
+            (None, None) if solver == Solver::Moller => Discrete::by(TriangleTest::Moller).into(),
+            (None, None) => Discrete::default().with_adjacent(self.query.adjacent).into(),
+        };
+        query.with_search(self.search())
     }
 
     fn search(&self) -> Search {
@@ -85,7 +79,6 @@ impl DetectArgs {
             traversal: research.walk(),
             // Every so many frames, and at no other.
             rebuild: research.rebuild.or(research.rebuild_every.map(|_| Rebuild::Manual)),
-            ..Search::default()
         }
     }
 

@@ -1,8 +1,10 @@
 //! The summary for people: a line, and with `-v` a table.
 
 use crate::report::Report;
-use nearmiss::contacts::{Contacts, Summary};
-use nearmiss::query::{QueryKind, Traversal};
+use nearmiss::Contacts;
+use nearmiss::query::QueryKind;
+use nearmiss::research::Summary;
+use nearmiss::research::Traversal;
 use nearmiss::words::counted;
 use nearmiss_lab::tables::digits;
 use std::fmt::Write;

@@ -8,7 +8,8 @@ use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::memory;
 use nearmiss::mesh::Body;
-use nearmiss::query::{Bv, Certified, Query, QueryKind};
+use nearmiss::query::{Query, QueryKind};
+use nearmiss::research::{Bv, Certified, QueryExt};
 use nearmiss_lab::accuracy::{
     Choice, Extent, Input, Scene, Trade, built_in, degeneracies, funnel, list, offsets, query_files, refit,
     scales, triangles,

@@ -6,6 +6,7 @@
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::query::{Query, QueryKind};
+use nearmiss::research::QueryExt;
 use nearmiss_lab::accuracy::triangles::{SIDES, on_grid};
 use nearmiss_lab::pairs::built::built;
 use nearmiss_lab::pairs::{Answers, Options, Stored, TriangleAnswers, ask, ask_triangles};

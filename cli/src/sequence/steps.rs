@@ -12,6 +12,7 @@ use nearmiss::contacts::{ContactGeometry, Contacts, Note};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::query::Query;
+use nearmiss::research::DetectorExt;
 use nearmiss::scene::Scene;
 use nearmiss::words::counted;
 use nearmiss_lab::OneQuery;

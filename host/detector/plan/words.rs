@@ -17,12 +17,10 @@ pub const STAGES: [(&str, &str); 9] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 60] = [
+const KERNELS: [(&str, &str); 57] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
     ("place", "poses applied, uploads put in place, other bodies at rest"),
     ("construct_bounds", "the box of each body's centres"),
-    ("construct_halves_bounds", "the box of each stretch of triangles"),
-    ("construct_halves", "position of a triangle along the longest axis of its stretch"),
     ("construct_runs", "runs of 16 tiles in halves of halves, on chip"),
     ("construct_morton", "a code along a curve for each triangle, after its body's prefix"),
     ("construct_tile_filters", "bodies of the triangles below each tile and node"),
@@ -40,7 +38,6 @@ const KERNELS: [(&str, &str); 60] = [
     ("refit_levels", "the volumes of a level"),
     ("refit_treelets", "leaves and all other volumes in one launch"),
     ("refit_tiles", "a volume for 16 nodes, for each further level"),
-    ("refit_bottom_up", "all volumes: the second of two siblings goes on"),
     ("traverse_leaves", "a walk for each leaf"),
     ("traverse_units", "work units given up by long walks"),
     ("traverse_sample", "the nearest of a few leaves, for a bound"),

@@ -12,9 +12,8 @@ use super::list::GrowableOutput;
 use super::precision::Precision;
 use crate::device::Device;
 use crate::error::Error;
-use crate::query::{Broad, Order, Query, WithVolume};
+use crate::query::{Broad, Query, WithVolume};
 use nearmiss_kernels::abi::{BodyRecord, Counters, Output, Pair, Positions, Span, TraverseFlags};
-use nearmiss_kernels::bv::Axes;
 use nearmiss_kernels::bvh::Violation;
 use nearmiss_kernels::entry::Kernels;
 use nearmiss_kernels::math::{Vec3, round};
@@ -239,14 +238,11 @@ struct New<'a, R> {
 impl<R: Precision> WithVolume for New<'_, R> {
     type Out = Result<Box<dyn BroadPhase<R>>, Error>;
 
-    fn with<V: Kernels>(self, axes: Axes) -> Self::Out {
+    fn with<V: Kernels>(self) -> Self::Out {
         let New { device, layout, query, margin, .. } = self;
         Ok(match query.broad_on(device.is_gpu()) {
-            Broad::Tree => Box::new(Trees::<R, V>::new(device, layout, query, (axes, margin))?),
-            Broad::Tiles => {
-                let order = query.search().order.unwrap_or(Order::DEFAULT);
-                Box::new(Tiles::<V>::new(device, layout, (order, axes, margin))?)
-            }
+            Broad::Tree => Box::new(Trees::<R, V>::new(device, layout, query, margin)?),
+            Broad::Tiles => Box::new(Tiles::<V>::new(device, layout, margin)?),
         })
     }
 }

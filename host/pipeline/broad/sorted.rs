@@ -7,10 +7,9 @@ use crate::pipeline::layout::Layout;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::sorter::{counted, sort, words};
 use crate::pipeline::{launch, purpose};
-use crate::query::Order;
 use nearmiss_kernels::abi::{BodyRecord, CutArgs, MortonArgs, MortonFlags, Positions, Span, TreeBody};
 use nearmiss_kernels::bvh::CODE_BITS;
-use nearmiss_kernels::bvh::centres::{KEYS, OF_A_BODY};
+use nearmiss_kernels::bvh::centres::OF_A_BODY;
 use nearmiss_kernels::math::ordered;
 use nearmiss_kernels::stage::construct::{cuts, morton};
 
@@ -19,6 +18,19 @@ use nearmiss_kernels::stage::construct::{cuts, morton};
 const BYTES: [u32; 4] = [32, 40, 48, 56];
 const _: () = assert!(8 * BYTES.len() as u32 == CODE_BITS && BYTES.len().is_multiple_of(2));
 
+/// Purpose of a sort.
+#[derive(Clone, Copy, PartialEq)]
+pub enum SortedFor {
+    /// Tiles: along Hilbert's curve, and each run of 16 tiles in halves of halves, cut across the
+    /// longest axis.
+    Tiles,
+    /// A tree: along Morton's curve.
+    Tree {
+        /// Words of the caller that are zero after every sort.
+        extra: usize,
+    },
+}
+
 /// Triangles of some bodies, and the memory to sort them again: 16 bytes a triangle.
 pub struct Sorted {
     /// The bodies, in the order of their triangles, with their records.
@@ -26,22 +38,17 @@ pub struct Sorted {
     records: Vec<BodyRecord>,
     table: Buffer<TreeBody>,
     count: u32,
-    /// `None` for the Morton order, which trees use.
-    order: Option<Order>,
+    is_for_tiles: bool,
     /// Words that are zero before a sort: bounds of each body, counts of each byte of the codes,
     /// and the caller's words.
     begins_zero: Buffer<u64>,
     extra: u64,
-    /// Words that are zero before a level is cut: the boxes of its runs, and counts as above.
-    /// `None` if no whole level is cut.
-    cuts: Option<Buffer<u64>>,
     items: [Buffer<u64>; 2],
 }
 
 impl Sorted {
     /// Allocates memory for the triangles of these bodies. Bodies ascend, and each has at least one
-    /// triangle. `extra` is the number of the caller's words: they are zero after every sort. The
-    /// order is for tiles, or without one for a tree.
+    /// triangle.
     ///
     /// # Errors
     /// Device errors.
@@ -49,8 +56,12 @@ impl Sorted {
         device: &Device,
         layout: &Layout,
         bodies: &[usize],
-        (order, extra): (Option<Order>, usize),
+        purpose: SortedFor,
     ) -> Result<Self, Error> {
+        let extra = match purpose {
+            SortedFor::Tiles => 0,
+            SortedFor::Tree { extra } => extra,
+        };
         let mut count = 0;
         let table = bodies.iter().map(|&body| {
             let (triangle, triangles) = layout.triangles(body);
@@ -61,25 +72,22 @@ impl Sorted {
         let scratch = device.of(purpose::SCRATCH);
         let counts = BYTES.len() * words(device, count);
         let zero = OF_A_BODY as usize * table.len() + counts + extra;
-        let stretches = count.div_ceil(2 * cuts::RUN) as usize;
-        let is_cut = order == Some(Order::Median) && count > cuts::RUN;
         let items = || scratch.buffer(count as usize);
         Ok(Sorted {
             records: bodies.iter().map(|&body| layout.records[body]).collect(),
             table: scratch.upload(&table)?,
             bodies: table,
             count,
-            order,
+            is_for_tiles: purpose == SortedFor::Tiles,
             begins_zero: scratch.buffer(zero)?,
             extra: extra as u64,
-            cuts: is_cut.then(|| scratch.buffer(KEYS as usize * stretches + counts)).transpose()?,
             items: [items()?, items()?],
         })
     }
 
     /// Sorts the triangles by their positions at t = 0. All work is on the device, except the order
     /// of the bodies: with more than one, it waits for their boxes. Cost: seven launches, four of
-    /// them a radix sort. Cut runs add one launch, and seven for each level above them.
+    /// them a radix sort; one more for tiles, whose runs are cut.
     ///
     /// # Errors
     /// Device errors.
@@ -102,7 +110,7 @@ impl Sorted {
             items: self.items[0].span(),
             tiles: counted(device, counts, self.count, 0),
             count: self.count,
-            flags: of_tiles.when(self.order.is_some()),
+            flags: of_tiles.when(self.is_for_tiles),
         };
         let lanes = (self.count as usize).div_ceil(morton::TOGETHER as usize);
         launch::striding::<R::Bounds>(device, lanes, &morton)?;
@@ -117,47 +125,27 @@ impl Sorted {
     }
 
     /// Cuts the sorted triangles into runs.
-    fn cut<R: Precision>(&mut self, device: &Device, morton: &MortonArgs<R>) -> Result<(), Error> {
-        if !self.is_in_runs() {
+    fn cut<R: Precision>(&self, device: &Device, morton: &MortonArgs<R>) -> Result<(), Error> {
+        if !self.is_for_tiles {
             return Ok(());
         }
-        let mut args = CutArgs {
+        let args = CutArgs {
             frames: morton.frames,
             faces: morton.faces,
             bodies: morton.bodies,
             extents: morton.extents,
-            stretches: Span::EMPTY,
             items: self.items[0].span(),
             out: self.items[1].span(),
-            tiles: morton.tiles,
             count: self.count,
-            level: 0,
+            pad: 0,
         };
         let runs = self.count.div_ceil(cuts::RUN);
-        if let Some(zeroed) = &mut self.cuts {
-            for level in (1..=runs.next_power_of_two().ilog2()).rev() {
-                zeroed.clear()?;
-                let span = zeroed.span();
-                let boxes = u64::from(KEYS * runs.div_ceil(1 << level));
-                let counts = span.part(boxes, (BYTES.len() * words(device, self.count)) as u64);
-                args.stretches = span.part(0, boxes);
-                args.tiles = counted(device, counts, self.count, 0);
-                args.level = level;
-                launch::striding::<R::HalvesBounds>(device, self.count as usize, &args)?;
-                launch::striding::<R::Halves>(device, self.count as usize, &args)?;
-                sort(device, self.items.each_ref(), (self.count, Span::EMPTY), counts, &BYTES)?;
-            }
-        }
         launch::blocks::<R::Runs>(device, runs, &args)
     }
 
-    /// Returns whether runs are cut, which leaves the triangles in the second list.
-    fn is_in_runs(&self) -> bool {
-        matches!(self.order, Some(Order::Runs | Order::Median))
-    }
-
+    /// Returns the list of the sorted triangles. Cuts leave them in the second one.
     fn in_order(&self) -> &Buffer<u64> {
-        &self.items[usize::from(self.is_in_runs())]
+        &self.items[usize::from(self.is_for_tiles)]
     }
 
     /// Returns the triangles in order: the lower halves of the words.
@@ -176,9 +164,9 @@ impl Sorted {
     /// Returns the bodies and their triangles in order, without the memory to sort again. Cost:
     /// none; one of two lists is freed.
     pub fn into_order(self) -> (Vec<TreeBody>, Buffer<u64>) {
-        let is_in_runs = self.is_in_runs();
+        let is_for_tiles = self.is_for_tiles;
         let [curve, runs] = self.items;
-        (self.bodies, if is_in_runs { runs } else { curve })
+        (self.bodies, if is_for_tiles { runs } else { curve })
     }
 
     /// Returns the caller's zeroed words.

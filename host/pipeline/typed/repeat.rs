@@ -12,7 +12,7 @@ use crate::stages::Stage;
 pub trait Again {
     /// Returns the milliseconds of each of `times` runs of a stage. Its input must exist: volumes
     /// of the leaves for `Refit`; a whole frame of the query, the last one, for `Traverse`,
-    /// `Narrow` and `Order`. See [`crate::Detector::repeat_stage`].
+    /// `Narrow` and `Order`. See [`crate::research::DetectorExt::repeat_stage`].
     ///
     /// # Errors
     /// Device errors.

@@ -12,7 +12,7 @@ use crate::pipeline::narrow::Features;
 use crate::pipeline::placing::Placing;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::purpose;
-use crate::query::{self, Bv, Order, Query};
+use crate::query::{self, Bv, Query};
 use crate::scene::Body;
 use nearmiss_kernels::abi::{BodyRecord, Pair, counter};
 
@@ -20,7 +20,7 @@ use nearmiss_kernels::abi::{BodyRecord, Pair, counter};
 #[derive(Clone, Copy, PartialEq)]
 pub enum BroadKey {
     /// Tiles: volume, order, and, in a scene with hubs, whether pairs round a hub are candidates.
-    Tiles(Bv, Order, Option<bool>),
+    Tiles(Bv, Option<bool>),
     /// Trees, whose walks keep state: all of a query except its numbers.
     Trees(Query),
 }
@@ -33,7 +33,7 @@ impl BroadKey {
         }
         let has_hubs = !(layout.hubs.is_empty() && layout.rims.is_empty());
         let adjacent = has_hubs.then(|| shape.keeps_adjacent());
-        BroadKey::Tiles(shape.bv(), shape.search().order.unwrap_or(Order::DEFAULT), adjacent)
+        BroadKey::Tiles(shape.bv(), adjacent)
     }
 }
 

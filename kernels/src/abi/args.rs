@@ -4,7 +4,6 @@ use super::{
     BodyRecord, Counter, Counters, FilterArgs, Inner, LeafPlace, Link, Merge, MortonFlags, Node, NodeFilter,
     Output, Pair, Point, Span, TraverseFlags, TreeBody, Treelet, Unit, VertexMotion,
 };
-use crate::bv::Axes;
 use crate::math::Real;
 use bytemuck::{Pod, Zeroable};
 
@@ -58,8 +57,7 @@ arguments! {
         /// Along which curve.
         flags: MortonFlags,
     }
-    /// `construct_halves_bounds`, `construct_halves`, `construct_runs`: stretches of triangles in
-    /// order.
+    /// `construct_runs`: runs of triangles in order.
     CutArgs<R: Real> {
         /// Positions.
         frames: Positions<R>,
@@ -69,19 +67,14 @@ arguments! {
         bodies: Span<TreeBody>,
         /// Extents of each body's triangles.
         extents: Span<u64>,
-        /// Six ordered keys a stretch: the box of its triangles' centres.
-        stretches: Span<u64>,
-        /// Items in order, above each its triangle. For `construct_halves` also out: a code above
-        /// its triangle.
+        /// Items in order, above each its triangle.
         items: Span<u64>,
-        /// Out of `construct_runs`: the same in their new order.
+        /// Out: the same in their new order.
         out: Span<u64>,
-        /// Out: counts of the codes' lowest bytes.
-        tiles: Tiles,
         /// How many triangles the bodies have.
         count: u32,
-        /// A stretch is 2^level runs.
-        level: u32,
+        /// Nothing.
+        pad: u32,
     }
     /// How often each digit comes in each tile of a list, see [`crate::sort`].
     Tiles {
@@ -241,10 +234,6 @@ arguments! {
         from: u32,
         /// Behind the last level. More than one level only in a launch of one block.
         to: u32,
-        /// Which axes merged oriented boxes take, see [`crate::bv::Axes`].
-        axes: Axes,
-        /// Nothing.
-        pad: u32,
     }
     /// `refit_treelets`: all volumes, those of the leaves too.
     TreeletsArgs<R: Real, V: Pod> {
@@ -266,30 +255,11 @@ arguments! {
         ticket: Span<u64>,
         /// Out: the volumes.
         nodes: Span<Node<V>>,
-        /// Which axes merged oriented boxes take, see [`crate::bv::Axes`].
-        axes: Axes,
         /// How much the volumes grow: half of the distance within which pairs are listed; 0 for
         /// touching alone.
         margin: f32,
-    }
-    /// `refit_bottom_up`: the volumes of the inner nodes, by the second arrival.
-    BottomUpArgs<V: Pod> {
-        /// The tree.
-        links: Span<Link>,
-        /// The parent of each pair of siblings.
-        pair_parents: Span<u32>,
-        /// Each leaf's node.
-        leaf_nodes: Span<u32>,
-        /// The first leaf below each pair of siblings; empty if all nodes are merged.
-        firsts: Span<u32>,
-        /// For each pair of siblings: how many came by so far, in all launches.
-        arrivals: Span<u64>,
-        /// The volumes: those of the leaves in, the others out.
-        nodes: Span<Node<V>>,
-        /// Which axes merged oriented boxes take, see [`crate::bv::Axes`].
-        axes: Axes,
-        /// The root's index.
-        root: u32,
+        /// Nothing.
+        pad: u32,
     }
     /// `traverse_leaves`, `traverse_units`: leaf against tree.
     TraverseArgs<V: Pod> {

@@ -1,7 +1,6 @@
 //! Tiles: the arguments of their kernels.
 
 use super::{Counters, FilterArgs, Node, NodeFilter, Output, Pair, Positions, Span, TraverseFlags};
-use crate::bv::Axes;
 use crate::math::Real;
 use bytemuck::{Pod, Zeroable};
 
@@ -39,10 +38,10 @@ arguments! {
         tile: u32,
         /// The first node above tiles.
         above: u32,
-        /// Which axes merged boxes take.
-        axes: Axes,
         /// How much volumes grow.
         margin: f32,
+        /// Nothing.
+        pad: u32,
     }
     /// `refit_tiles`: nodes above other nodes.
     RefitTilesArgs<V: Pod> {
@@ -60,10 +59,6 @@ arguments! {
         tile: u32,
         /// Tiles below each.
         tiles: u32,
-        /// Which axes merged boxes take.
-        axes: Axes,
-        /// Nothing.
-        pad: u32,
     }
     /// `fit_rims`: the edges opposite to the hub of each node's triangles.
     RimsArgs<R: Real, V: Pod> {
@@ -85,10 +80,10 @@ arguments! {
         below: u32,
         /// How many nodes are below them.
         below_count: u32,
-        /// Which axes merged boxes take.
-        axes: Axes,
         /// How much volumes grow.
         margin: f32,
+        /// Nothing.
+        pad: u32,
     }
     /// `traverse_tiles`: pairs of tiles that overlap.
     TilePairsArgs<V: Pod> {

@@ -2,7 +2,7 @@
 //! rounds, outward.
 
 use super::contain::between;
-use super::{Axes, Contain, FillsNode, Volume, fills_node};
+use super::{Contain, FillsNode, Volume, fills_node};
 use crate::math::tolerance::{APART_DOWN, U32};
 use crate::math::{Real, Vec3, round};
 use bytemuck::{Pod, Zeroable};
@@ -72,7 +72,7 @@ impl Volume for Aabb {
         Aabb::of([p, q, r, s, t, u])
     }
     #[inline]
-    fn merge(&self, other: &Self, _: Axes) -> Self {
+    fn merge(&self, other: &Self) -> Self {
         Aabb::merge(*self, *other)
     }
     /// A sum is rounded by less than half the gap to the next number.

@@ -5,7 +5,7 @@
 //! the same mixture. So fitting rounds outward twice, and union is exact, as for [`Aabb`].
 
 use super::contain::between;
-use super::{Aabb, Axes, Contain, FillsNode, Volume, fills_node};
+use super::{Aabb, Contain, FillsNode, Volume, fills_node};
 use crate::exec::ALONE;
 use crate::math::tolerance::{MOVING_LIMIT, MOVING_MIXTURE, MOVING_TIME};
 use crate::math::{Real, Vec3};
@@ -62,7 +62,7 @@ impl Volume for Linear {
         Linear::between(Aabb::of(t0), Aabb::of(t1))
     }
     #[inline]
-    fn merge(&self, o: &Self, _: Axes) -> Self {
+    fn merge(&self, o: &Self) -> Self {
         let mut b = *self;
         for k in 0..3 {
             b.lo0[k] = self.lo0[k].min(o.lo0[k]);

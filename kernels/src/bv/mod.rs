@@ -21,26 +21,21 @@ pub use obb::Obb;
 
 use crate::math::tolerance::NEAR_GROWTH;
 use crate::math::{Real, Vec3};
-use bytemuck::{Pod, Zeroable};
+use bytemuck::Pod;
 
 /// The list of volumes, an entry each. An entry has the type, its part of kernel names, and whether
-/// small inner nodes are fitted (`groups`, see [`Volume::group`]). Then the choices of a caller:
-/// name, rule of axes, description. Kernels, the host's choice and the command line are made from
-/// this list.
+/// small inner nodes are fitted (`groups`, see [`Volume::GROUP`]). Then its name for a caller, and its
+/// description. Kernels, the host's choice and the command line are made from this list.
 #[macro_export]
 macro_rules! volumes {
     ($then:ident) => {
         $then! {
-            Aabb = "aabb" [] {
-                Aabb = "aabb", PCA, "Axis-aligned boxes; in a continuous query around both ends of the step.";
-            }
-            Linear = "linear" [] {
-                Linear = "linear", PCA, "Boxes that move: axis-aligned at both ends of the step, in between on straight lines.";
-            }
-            Obb = "obb" [groups] {
-                Obb = "obb", PCA, "Oriented boxes along the principal axes of what they hold; the paper's.";
-                ObbChild = "obb-child", CHILD, "Oriented boxes that keep the axes of a child: the older rule.";
-            }
+            Aabb = "aabb" [],
+                "Axis-aligned boxes; in a continuous query around both ends of the step.";
+            Linear = "linear" [],
+                "Boxes that move: axis-aligned at both ends of the step, in between on straight lines.";
+            Obb = "obb" [groups],
+                "Oriented boxes along the principal axes of what they hold; the paper's.";
         }
     };
 }
@@ -62,23 +57,20 @@ pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
     /// Whether overlap tests nest: parts of two volumes that are apart are apart too. A safety
     /// slack prevents nesting: a small volume may overlap one that its larger parent does not.
     const NESTS: bool;
+    /// Inner nodes of up to so many leaves are fitted to the points below them; the others are
+    /// merged. 0: all are merged.
+    const GROUP: u32 = 0;
     /// Around a triangle that stands still.
     fn still<R: Real>(corners: [Vec3<R>; 3]) -> Self;
     /// Around a triangle whose corners move linearly from t0 to t1: holds it at every t in [0, 1].
     fn moving<R: Real>(t0: [Vec3<R>; 3], t1: [Vec3<R>; 3]) -> Self;
-    /// Around both, by the rule of axes (only oriented boxes have one).
-    fn merge(&self, other: &Self, axes: Axes) -> Self;
-    /// Inner nodes of up to so many leaves are fitted to the points below them; the others are
-    /// merged. 0: all are merged.
-    #[inline(always)]
-    fn group(_: Axes) -> u32 {
-        0
-    }
-    /// Around points: the fit of inner nodes that are not merged (see [`Volume::group`]).
+    /// Around both.
+    fn merge(&self, other: &Self) -> Self;
+    /// Around points: the fit of inner nodes that are not merged (see [`Volume::GROUP`]).
     #[inline(always)]
     fn of_points<R: Real>(points: &(impl Points<R> + ?Sized)) -> Self {
         let mut all = Self::still([points.first(); 3]);
-        points.each(|p| all = all.merge(&Self::still([p; 3]), Axes::PCA));
+        points.each(|p| all = all.merge(&Self::still([p; 3])));
         all
     }
     /// Around all points within `by`, a length above 0, of a point that it is around. Rounded
@@ -118,18 +110,4 @@ pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
     /// Never more than the distance of two points that they are around, at t = 0; 0 if they
     /// overlap.
     fn apart(&self, other: &Self) -> f32;
-}
-
-/// Which axes a merged oriented box takes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-#[repr(transparent)]
-pub struct Axes(pub u32);
-
-impl Axes {
-    /// Nodes of up to [`GROUP`] leaves take the principal axes of the points below them. If the
-    /// world's axes give less surface, they take those. Larger nodes take those of the child whose
-    /// axes have less surface.
-    pub const PCA: Axes = Axes(0);
-    /// Those of the larger child: cheap, and a little looser.
-    pub const CHILD: Axes = Axes(1);
 }

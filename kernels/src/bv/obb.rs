@@ -29,7 +29,7 @@
 
 use super::axes::{self, Frame, three};
 use super::contain::within;
-use super::{Axes, Contain, FillsNode, GROUP, Points, Volume, fills_node};
+use super::{Contain, FillsNode, GROUP, Points, Volume, fills_node};
 use crate::math::tolerance::{
     APART_DOWN, BOX_APART, BOX_APART_UNDERFLOW, BOX_CHILD, BOX_LENGTH, BOX_LIMIT, BOX_POINT, BOX_UNDERFLOW,
     BOX_UP,
@@ -188,6 +188,7 @@ fn select(first: bool, x: [f32; 3], y: [f32; 3]) -> [f32; 3] {
 
 impl Volume for Obb {
     const NESTS: bool = false;
+    const GROUP: u32 = GROUP;
 
     /// The axes are the longest edge, across it, and the normal: no rectangle around a triangle is
     /// smaller, and they cost no rotations.
@@ -204,11 +205,12 @@ impl Volume for Obb {
         Obb::of(&Corners([p, s, q, t, r, u]))
     }
 
-    /// Along its own axes a box reaches as far as its extents. So only the other's reach is
+    /// The box takes the axes of the child whose axes have less surface. Along its own axes a box
+    /// reaches as far as its extents. So only the other's reach is
     /// computed, for both choices from the same nine products. Sizes beyond `2^60` or below `2^-60`
     /// may take the axes with more surface.
     #[inline]
-    fn merge(&self, o: &Self, rule: Axes) -> Self {
+    fn merge(&self, o: &Self) -> Self {
         if (self.slack == f32::INFINITY) | (o.slack == f32::INFINITY) {
             return Obb::EVERYTHING;
         }
@@ -219,11 +221,7 @@ impl Volume for Obb {
         let theirs = Vec3([h.dot(q[0]), h.dot(q[1]), h.dot(q[2])]);
         let mine = Vec3([g.dot(column(0)), g.dot(column(1)), g.dot(column(2))]);
         let along = |a: [Vec3<f32>; 3]| Vec3([a[0].dot(t), a[1].dot(t), a[2].dot(t)]);
-        let first = if rule == Axes::CHILD {
-            self.slack >= o.slack
-        } else {
-            surface(g, theirs, along(a)) <= surface(h, mine, along(b))
-        };
+        let first = surface(g, theirs, along(a)) <= surface(h, mine, along(b));
         let pick = |x: [f32; 3], y: [f32; 3]| select(first, x, y);
         let of = |p: &Obb, q: &Obb| Obb {
             c: pick(p.c, q.c),
@@ -249,11 +247,6 @@ impl Volume for Obb {
     fn reach(&self) -> f32 {
         let (c, h) = (Vec3(self.c).map(Real::abs), Vec3(self.h));
         (Real::max(c[0], Real::max(c[1], c[2])) + (h[0] + h[1] + h[2])) * BOX_UP
-    }
-
-    #[inline(always)]
-    fn group(axes: Axes) -> u32 {
-        if axes == Axes::CHILD { 0 } else { GROUP }
     }
 
     #[inline(always)]

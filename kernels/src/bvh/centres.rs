@@ -144,12 +144,10 @@ pub fn report_together<B: Block>(block: &mut B, best: Shared<u64>, extents: Span
 
 /// The extents of groups, each a contiguous range of the `count` items. A block's items mostly
 /// belong to one group. `which` returns the group of an item. `add` adds an item and returns its
-/// group. Its flag is false for a repeated item, whose size does not count. An extent has `words`
-/// words.
+/// group. Its flag is false for a repeated item, whose size does not count.
 pub fn of_each<B: Block>(
     block: &mut B,
     extents: Span<u64>,
-    words: u32,
     count: u32,
     which: impl Fn(&B, u32) -> u32,
     add: impl Fn(&B::Lane, &mut Extent, u32, bool) -> u32,
@@ -167,11 +165,11 @@ pub fn of_each<B: Block>(
             if from == to {
                 extent.put(lane, lanes, best);
             } else {
-                extent.report(lane, extents, words * of);
+                extent.report(lane, extents, OF_A_BODY * of);
             }
         });
         if from == to {
-            report_together(block, best, extents, words * from);
+            report_together(block, best, extents, OF_A_BODY * from);
         }
         first = first.saturating_add(block.blocks() * lanes);
     }

@@ -1,16 +1,15 @@
 //! Nodes of few leaves, whose volume is fitted to the points below them instead of merged.
 
 use crate::abi::{Link, Positions, Span};
-use crate::bv::{Axes, Points, Volume};
+use crate::bv::{Points, Volume};
 use crate::exec::Lane;
 use crate::math::{Real, Vec3};
 
 /// Whether the volume of an inner node is fitted: then no refit touches it. `firsts` has the first
 /// leaf of each pair.
 #[inline(always)]
-pub fn is_fitted<V: Volume, L: Lane>(lane: &L, firsts: Span<u32>, link: Link, axes: Axes) -> bool {
-    let most = V::group(axes);
-    most > 0 && link.last - lane.read(firsts, link.link / 2) < most
+pub fn is_fitted<V: Volume, L: Lane>(lane: &L, firsts: Span<u32>, link: Link) -> bool {
+    V::GROUP > 0 && link.last - lane.read(firsts, link.link / 2) < V::GROUP
 }
 
 /// The corners of the triangles of neighbouring leaves: leaf by leaf, each corner at t = 0 and,

@@ -10,7 +10,7 @@ pub mod rims;
 pub mod tiles;
 
 use crate::abi::{LEAF, Link, Node, NodeFilter};
-use crate::bv::{Axes, Volume};
+use crate::bv::Volume;
 
 /// Bits of a triangle's Morton code: four passes of the radix sort.
 pub const CODE_BITS: u32 = 32;
@@ -196,7 +196,7 @@ pub fn check_filters(
 pub fn check_volumes<V: Volume>(
     links: &[Link],
     nodes: &[Node<V>],
-    (root, axes): (u32, Axes),
+    root: u32,
     leaf: impl Fn(u32) -> V,
     fitted: impl Fn(u32, u32) -> Option<V>,
 ) -> Result<(), Violation> {
@@ -211,7 +211,7 @@ pub fn check_volumes<V: Volume>(
             (volume, Violation::Fit { node: at })
         } else {
             let [left, right] = [0, 1].map(|i| nodes[link.link as usize + i].volume);
-            (left.merge(&right, axes), Violation::Merge { node: at })
+            (left.merge(&right), Violation::Merge { node: at })
         };
         if *node != link.with(volume) {
             return Err(violation);

@@ -1,6 +1,6 @@
 //! Volumes in a block's shared memory.
 
-use crate::bv::{Axes, Volume};
+use crate::bv::Volume;
 use crate::exec::{Block, Lane, Shared, Slot};
 
 /// Places for volumes, stored word by word, so that neighbours are in different banks.
@@ -45,19 +45,12 @@ impl OnChip {
     /// Merges runs of volumes, each lane's in its own place and in `volumes`. A run is `each`
     /// lanes, `apart` lanes from one to the next. The first one's volume becomes the merge of all;
     /// the first merge spans half a run.
-    pub fn merge<V: Volume, B: Block>(
-        self,
-        block: &mut B,
-        volumes: &mut B::Slot<V>,
-        each: u32,
-        apart: u32,
-        axes: Axes,
-    ) {
+    pub fn merge<V: Volume, B: Block>(self, block: &mut B, volumes: &mut B::Slot<V>, each: u32, apart: u32) {
         let mut width = each / 2;
         while width > 0 {
             block.phase(|lane| {
                 if lane.lane() % (each * apart) < width * apart && lane.lane().is_multiple_of(apart) {
-                    let merged = volumes.of(lane).merge(&self.get(lane, lane.lane() + width * apart), axes);
+                    let merged = volumes.of(lane).merge(&self.get(lane, lane.lane() + width * apart));
                     *volumes.of(lane) = merged;
                     self.put(lane, lane.lane(), merged);
                 }

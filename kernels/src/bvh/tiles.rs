@@ -3,7 +3,7 @@
 
 use super::Violation;
 use crate::abi::{LEAF, NONE, Node, NodeFilter};
-use crate::bv::{Axes, Contain, Volume};
+use crate::bv::{Contain, Volume};
 use crate::math::Vec3;
 
 /// Triangles of a tile: as many as a warp has lanes.
@@ -95,8 +95,6 @@ pub struct Tiles<'a, V> {
     pub nodes: &'a [Node<V>],
     /// The filter of the triangles below each node; empty without filters.
     pub filters: &'a [NodeFilter],
-    /// Which axes merged boxes take.
-    pub axes: Axes,
 }
 
 /// Checks tiles. Each triangle has one place, in its part. Volumes of triangles are those of
@@ -113,7 +111,7 @@ pub fn check<V: Volume>(
     whose: impl Fn(u32) -> NodeFilter,
     seen: [&mut [bool]; 2],
 ) -> Result<(), Violation> {
-    let Tiles { levels, triangles, leaves, nodes, filters, .. } = *tiles;
+    let Tiles { levels, triangles, leaves, nodes, filters } = *tiles;
     let all = levels.first(levels.count) as usize;
     let sound = levels == Levels::of(triangles)
         && leaves.len() == levels.leaves() as usize
@@ -188,7 +186,7 @@ fn check_level<V: Volume>(
     at: usize,
     whose: &impl Fn(u32) -> NodeFilter,
 ) -> Result<(), Violation> {
-    let Tiles { levels, triangles, leaves, nodes, filters, axes } = *tiles;
+    let Tiles { levels, triangles, leaves, nodes, filters } = *tiles;
     let own = levels.part(level, at, triangles[at]);
     for i in 0..own.count {
         let node = own.first + i;
@@ -211,7 +209,7 @@ fn check_level<V: Volume>(
         };
         let mut width = each as usize / 2;
         while width > 0 {
-            (0..width).for_each(|k| volumes[k] = volumes[k].merge(&volumes[k + width], axes));
+            (0..width).for_each(|k| volumes[k] = volumes[k].merge(&volumes[k + width]));
             width /= 2;
         }
         if nodes[node as usize] != (Node { volume: volumes[0], link, last }) {

@@ -2,7 +2,8 @@
 
 use super::row::Row;
 use crate::tables::digits;
-use nearmiss::query::{Bv, Certified, QueryKind, Solver};
+use nearmiss::query::QueryKind;
+use nearmiss::research::{Bv, Certified, Solver};
 
 /// Returns whether a row is of the default choice, with the positions as given.
 fn is_default(row: &Row) -> bool {

@@ -9,6 +9,7 @@ use crate::pairs::{Options, Stored, ask, mean_edge};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::query::{Query, QueryKind};
+use nearmiss::research::QueryExt;
 use rayon::prelude::*;
 
 /// Cases whose answers are known.

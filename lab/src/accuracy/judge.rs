@@ -5,7 +5,7 @@ use super::gap::gap;
 use crate::case::{Case, Features};
 use crate::pairs::{Outcome, mean_edge};
 use nearmiss::contacts::Status;
-use nearmiss::query::Solver;
+use nearmiss::research::Solver;
 
 /// Known answer of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]

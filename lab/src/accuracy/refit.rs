@@ -5,7 +5,8 @@ use crate::OneQuery;
 use crate::tables::{Frames, Printed, digits};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
-use nearmiss::query::{Bv, Query};
+use nearmiss::query::Query;
+use nearmiss::research::{Bv, QueryExt};
 use serde::Serialize;
 
 /// A frame of an animation.

@@ -2,7 +2,7 @@
 
 use super::judge::Judged;
 use crate::tables::{Printed, digits};
-use nearmiss::query::Solver;
+use nearmiss::research::Solver;
 use serde::Serialize;
 
 /// A choice with its counts and costs. Columns that do not apply are empty.

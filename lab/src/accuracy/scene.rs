@@ -12,8 +12,9 @@ use nearmiss::contacts::{Contact, Contacts, Kind, Status};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Positions, Topology};
-use nearmiss::pipeline::mean_side;
-use nearmiss::query::{Bv, Certified, CertifiedPrecision, Continuous, Query, QueryKind, Search, Solver};
+use nearmiss::query::{Continuous, Query, QueryKind};
+use nearmiss::research::pipeline::mean_side;
+use nearmiss::research::{Bv, Certified, CertifiedPrecision, QueryExt, Search, Solver, WithSolver};
 use rayon::prelude::*;
 
 /// A body whose contacts are known.

@@ -7,7 +7,8 @@ use crate::pairs::built::built;
 use crate::pairs::degenerate::{Degeneracy, MOST, degenerate};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
-use nearmiss::query::{Certified, QueryKind};
+use nearmiss::query::QueryKind;
+use nearmiss::research::Certified;
 
 /// Size of a sweep.
 #[derive(Clone, Copy, Debug)]

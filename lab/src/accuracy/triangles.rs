@@ -8,6 +8,7 @@ use crate::pairs::{Stored, ask_triangles};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::query::QueryKind;
+use nearmiss::research::QueryExt;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 use rayon::prelude::*;

@@ -6,11 +6,12 @@ use crate::case::Case;
 use nearmiss::contacts::Status;
 use nearmiss::device::{Buffer, Device};
 use nearmiss::error::Error;
-use nearmiss::pipeline::Layout;
-use nearmiss::pipeline::counts::{Counts, FrameCounters};
-use nearmiss::pipeline::narrow::{Capacities, ContinuousNarrow, Features, NarrowContext};
-use nearmiss::pipeline::precision::Precision;
-use nearmiss::query::{Certified, Continuous, ContinuousSolver, Query};
+use nearmiss::query::Query;
+use nearmiss::research::pipeline::Layout;
+use nearmiss::research::pipeline::counts::{Counts, FrameCounters};
+use nearmiss::research::pipeline::narrow::{Capacities, ContinuousNarrow, Features, NarrowContext};
+use nearmiss::research::pipeline::precision::Precision;
+use nearmiss::research::{Certified, ContinuousSolver, WithSolver};
 use nearmiss_kernels::abi::{Hit, Output, Positions, Span, counter};
 
 /// Tests whether the features of every case meet, and when first. It uses the query's solver,
@@ -24,12 +25,13 @@ use nearmiss_kernels::abi::{Hit, Output, Positions, Span, counter};
 /// are stored in f32. Device errors.
 pub fn ask(device: &Device, cases: &[Case], query: &Query, how: Options) -> Result<Answers, Error> {
     query.check()?;
-    let Query::Continuous(Continuous { mut solver, .. }) = *query else {
+    let Query::Continuous(continuous) = query else {
         return Err(Error::InvalidArgument {
             what: format!("single features need a continuous query, got {}", query.kind().name()),
             advice: "use a continuous query, or `ask_triangles` for triangles at one time".into(),
         });
     };
+    let mut solver = continuous.chosen();
     check(cases, how.stored)?;
     if let ContinuousSolver::Certified(certified) = &mut solver {
         certified.tolerance.get_or_insert_with(|| Certified::TOLERANCE * mean_edge(cases));

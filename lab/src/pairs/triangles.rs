@@ -6,11 +6,12 @@ use crate::oracle::Triangle;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::{MAX_ABS_F64, Mesh, Positions};
-use nearmiss::pipeline::counts::{Counts, FrameCounters};
-use nearmiss::pipeline::list::List;
-use nearmiss::pipeline::narrow::{DiscreteNarrow, Features, NarrowContext};
-use nearmiss::pipeline::precision::Precision;
-use nearmiss::query::{Discrete, Query, TriangleTest};
+use nearmiss::query::Query;
+use nearmiss::research::pipeline::counts::{Counts, FrameCounters};
+use nearmiss::research::pipeline::list::List;
+use nearmiss::research::pipeline::narrow::{DiscreteNarrow, Features, NarrowContext};
+use nearmiss::research::pipeline::precision::Precision;
+use nearmiss::research::{TriangleTest, WithSolver};
 use nearmiss_kernels::abi::{self, Pair, Point, Span, counter};
 
 /// Answers to a number of triangle pairs.
@@ -40,12 +41,13 @@ pub fn ask_triangles(
     stored: Stored,
 ) -> Result<TriangleAnswers, Error> {
     query.check()?;
-    let Query::Discrete(Discrete { test, .. }) = *query else {
+    let Query::Discrete(discrete) = query else {
         return Err(Error::InvalidArgument {
             what: format!("triangles at one time need a discrete query, got {}", query.kind().name()),
             advice: "use a discrete query, or `ask` for features in motion".into(),
         });
     };
+    let test = discrete.chosen();
     let mut all = TriangleAnswers::default();
     for pairs in pairs.chunks(AT_ONCE) {
         let points: Vec<[f64; 3]> = pairs.iter().flatten().flatten().copied().collect();

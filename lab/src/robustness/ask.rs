@@ -7,7 +7,8 @@ use crate::pairs::{Options, Outcome, Stored, ask};
 use nearmiss::contacts::Status;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
-use nearmiss::query::{Certified, CertifiedPrecision, Continuous};
+use nearmiss::query::Continuous;
+use nearmiss::research::{Certified, CertifiedPrecision, WithSolver};
 use nearmiss_kernels::prim::inclusion::Verdict;
 
 /// The solvers that must get every answer right.

@@ -10,7 +10,8 @@ use crate::pairs::{Options, Outcome, Stored, ask};
 use nearmiss::contacts::Status;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
-use nearmiss::query::{Certified, Continuous};
+use nearmiss::query::Continuous;
+use nearmiss::research::{Certified, WithSolver};
 
 /// Sizes of the integers: small; all exact in f32; all exact in f64.
 const REACHES: [i64; 3] = [8, REACH_F32, REACH_F64 / 32];

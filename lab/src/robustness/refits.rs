@@ -7,9 +7,9 @@ use nearmiss::contacts::Contacts;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::pipeline::enclose::Enclosed;
-use nearmiss::query::{Bv, Certified, Continuous, Query, Refit, WithVolume};
-use nearmiss_kernels::bv::Axes;
+use nearmiss::query::{Continuous, Query};
+use nearmiss::research::pipeline::enclose::Enclosed;
+use nearmiss::research::{Bv, Certified, QueryExt, Refit, WithSolver, WithVolume};
 use nearmiss_kernels::entry::Kernels;
 use nearmiss_kernels::math::Vec3;
 
@@ -18,8 +18,8 @@ use nearmiss_kernels::math::Vec3;
 const TRIANGLES: u32 = 24;
 /// Frames from one comparison with a new tree to the next.
 const APART: u32 = 500;
-/// The refit of each volume.
-const WAYS: [Refit; 4] = [Refit::Levels, Refit::Treelets, Refit::BottomUp, Refit::Treelets];
+/// The refits, in turn for each volume.
+const WAYS: [Refit; 2] = [Refit::Levels, Refit::Treelets];
 
 /// Returns the vertices at frame `k` of a ribbon that turns, waves and drifts, by sums and products
 /// alone.
@@ -65,8 +65,8 @@ struct Holds<'a> {
 impl WithVolume for Holds<'_> {
     type Out = Result<(), Error>;
 
-    fn with<V: Kernels>(self, axes: Axes) -> Self::Out {
-        let way = (self.refit, axes, 0.0);
+    fn with<V: Kernels>(self) -> Self::Out {
+        let way = (self.refit, 0.0);
         holds::<V>(self.device, self.frames, way, (self.report, self.name))
     }
 }
@@ -74,7 +74,7 @@ impl WithVolume for Holds<'_> {
 fn holds<V: Kernels>(
     device: &Device,
     frames: u32,
-    way: (Refit, Axes, f32),
+    way: (Refit, f32),
     (report, name): (&mut Report, &str),
 ) -> Result<(), Error> {
     let at = |k| ribbon(k).into_iter().map(Vec3).collect::<Vec<_>>();
@@ -153,7 +153,7 @@ mod tests {
             assert!(found.len() > 3, "{query:?}: {}", found.len());
         }
         let at = |k| ribbon(k).into_iter().map(Vec3).collect::<Vec<_>>();
-        let way = (Refit::Levels, Axes::PCA, 0.0);
+        let way = (Refit::Levels, 0.0);
         let mut tree = Enclosed::<f32, Obb>::new(&device, &faces(), [&at(0), &at(1)], way).expect("a tree");
         tree.move_to(&at(7), &at(8)).expect("a frame");
         assert_eq!(tree.outside(0.0, |_| ()).expect("nodes"), 0);

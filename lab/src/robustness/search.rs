@@ -7,7 +7,8 @@ use nearmiss::contacts::{Contacts, Status, triangle_contacts};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
-use nearmiss::query::{Bv, Query, QueryKind};
+use nearmiss::query::{Query, QueryKind};
+use nearmiss::research::{Bv, QueryExt};
 
 fn found(device: &Device, bodies: Vec<Body>, query: Query) -> Result<Contacts, Error> {
     let mut detector = OneQuery::new(device.clone(), bodies, query)?;

@@ -2,7 +2,7 @@
 
 use super::measure::Cell;
 use nearmiss::error::Error;
-use nearmiss::query::Solver;
+use nearmiss::research::Solver;
 
 /// Returns each cell's frames whose contacts differ from those of the first cell with the same
 /// motion. Volumes and walks must not change the answer of an exact solver. A solver that can err
@@ -34,8 +34,8 @@ pub fn agree(scene: &str, cells: &[Cell]) -> Result<Vec<usize>, Error> {
 mod tests {
     use super::super::way::Way;
     use super::*;
-    use nearmiss::pipeline::Stages;
-    use nearmiss::query::Bv;
+    use nearmiss::Stages;
+    use nearmiss::research::Bv;
 
     fn cell(moves: bool, front: bool, hashes: &[u64]) -> Cell {
         Cell {

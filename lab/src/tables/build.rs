@@ -6,8 +6,8 @@ use super::way::Way;
 use crate::OneQuery;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
-use nearmiss::pipeline::{Stage, Stages};
-use nearmiss::query::{Bv, Traversal};
+use nearmiss::research::{Bv, Traversal};
+use nearmiss::{Stage, Stages};
 
 /// Milliseconds of the stages that build a tree and fit its volumes, means over all frames.
 #[derive(Clone, Copy, Debug)]

@@ -3,7 +3,7 @@
 use super::build::Built;
 use super::measure::Cell;
 use super::paper_reference;
-use nearmiss::query::{Bv, Solver};
+use nearmiss::research::{Bv, Solver};
 use serde::Serialize;
 
 /// Columns that all rows of a scene share.
@@ -216,7 +216,7 @@ pub fn figure_614(paper: &Paper, cells: &[Cell]) -> Vec<Figure614> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nearmiss::pipeline::Stages;
+    use nearmiss::Stages;
 
     fn paper(scene: &str) -> Paper {
         Paper::new(scene, 49_000, "a machine".into(), "fastest")

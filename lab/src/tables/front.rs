@@ -8,7 +8,8 @@ use crate::OneQuery;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Query, QueueShape, Traversal};
+use nearmiss::query::Query;
+use nearmiss::research::{QueryExt, QueueShape, Traversal};
 use serde::Serialize;
 
 /// Fractions of the step.
@@ -71,7 +72,7 @@ pub fn front(
             if let Some(base) = base {
                 row.tests_ratio = ratio(row.node_tests as f64, base.node_tests as f64);
                 row.time_ratio = ratio(row.traverse_ms, base.traverse_ms);
-                if base.hash != row.hash && query.solver() == nearmiss::query::Solver::Exact {
+                if base.hash != row.hash && query.solver() == nearmiss::research::Solver::Exact {
                     let what = format!(
                         "{}, {way}, part {part} of a step: contacts differ from those without a front",
                         paper.scene

@@ -3,12 +3,13 @@
 use super::frames::Frames;
 use super::way::Way;
 use crate::OneQuery;
+use nearmiss::Stages;
 use nearmiss::contacts::Contacts;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
-use nearmiss::pipeline::Stages;
-use nearmiss::query::{Query, Solver};
+use nearmiss::query::Query;
+use nearmiss::research::{QueryExt, Solver};
 
 /// Results of an animation run in one way.
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 //! The thesis's own figures, milliseconds on its GPU (figures 6.12 and 6.13).
 
 use super::way::Way;
-use nearmiss::query::Bv;
+use nearmiss::research::Bv;
 
 /// The thesis's GPU.
 pub const PAPER_GPU: &str = "GTX 285 (2008)";

@@ -4,9 +4,9 @@ use super::text::{Printed, digits};
 use crate::OneQueryOnSeveral;
 use crate::scene;
 use nearmiss::Contacts;
+use nearmiss::Stages;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
-use nearmiss::pipeline::Stages;
 use nearmiss::query::{Query, QueryKind};
 use serde::Serialize;
 

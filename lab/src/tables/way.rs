@@ -1,7 +1,8 @@
 //! A column of figure 6.13: the way to run a frame.
 
-use nearmiss::query::{
-    Broad, Bv, Continuous, ContinuousSolver, FrontShape, Precision, Query, Refit, Search, Traversal,
+use nearmiss::query::{Continuous, Query};
+use nearmiss::research::{
+    Broad, Bv, ContinuousSolver, FrontShape, Precision, QueryExt, Refit, Search, Traversal, WithSolver,
 };
 
 /// One way to run a frame.
@@ -42,7 +43,7 @@ impl Way {
         if self.moves {
             // The thesis does not test the start of a step either.
             let solver = ContinuousSolver::Cubic(Precision::F64);
-            Continuous { solver, search, assume_free: true }.into()
+            Continuous::by(solver).with_search(search).assuming_free(true).into()
         } else {
             Query::discrete().with_search(search)
         }

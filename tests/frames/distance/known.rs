@@ -2,7 +2,8 @@
 
 use nearmiss::Rows;
 use nearmiss::mesh::{Mesh, Positions};
-use nearmiss::query::{QueryKind, Traversal};
+use nearmiss::query::QueryKind;
+use nearmiss::research::{KindExt, QueryExt, Traversal};
 use nearmiss::scene::{BodyId, CollisionFilter, Scene};
 use nearmiss::{Body, Query};
 use nearmiss_lab::OneQuery;

@@ -4,7 +4,8 @@
 use super::continuous::{boxes_meet, crowded, crumpled, promoted};
 use nearmiss::contacts::{Contact, Kind, Status};
 use nearmiss::mesh::Body;
-use nearmiss::query::{QueryKind, Solver};
+use nearmiss::query::QueryKind;
+use nearmiss::research::Solver;
 use nearmiss::{Contacts, Query};
 use nearmiss_kernels::prim::cubic::{ee_toi, vf_toi};
 use nearmiss_kernels::prim::inclusion::{Params, Verdict};

@@ -4,7 +4,8 @@
 use nearmiss::Contacts;
 use nearmiss::contacts::{Contact, Kind, Status};
 use nearmiss::mesh::Body;
-use nearmiss::query::{QueryKind, Solver};
+use nearmiss::query::QueryKind;
+use nearmiss::research::Solver;
 use nearmiss_kernels::math::Real;
 use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
 use nearmiss_lab::scene::{self, Rng};

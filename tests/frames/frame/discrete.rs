@@ -1,7 +1,8 @@
 //! Triangle pairs: known counts, and all pairs asked one by one of the rational oracle.
 
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Discrete, TriangleTest};
+use nearmiss::query::Discrete;
+use nearmiss::research::{TriangleTest, WithSolver};
 use nearmiss::{Device, Query};
 use nearmiss_lab::oracle::{Triangle, triangles_meet, triangles_meet_beyond};
 use nearmiss_lab::scene::{self, Rng};

@@ -1,7 +1,8 @@
 //! What is not asked for is not done: launches and bytes are counted.
 
 use nearmiss::mesh::Body;
-use nearmiss::query::{Discrete, Near, QueryKind, Solver, Traversal, TriangleTest};
+use nearmiss::query::{Discrete, Near, QueryKind};
+use nearmiss::research::{QueryExt, Solver, Traversal, TriangleTest, WithSolver};
 use nearmiss::scene::CollisionFilter;
 use nearmiss::{Device, Query};
 use nearmiss_lab::OneQuery;

@@ -2,7 +2,8 @@
 
 use super::*;
 use nearmiss::Device;
-use nearmiss::query::{Broad, Bv, QueryKind};
+use nearmiss::query::QueryKind;
+use nearmiss::research::{Broad, Bv, QueryExt};
 use nearmiss_lab::OneQuery;
 use support::asked::{of, with_tolerance};
 use support::{judged, machines, sanitizer};

@@ -3,7 +3,8 @@
 use nearmiss::Query;
 use nearmiss::contacts::{Kind, NearPair, Rows, Status};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Bv, Certified, CertifiedPrecision, Continuous};
+use nearmiss::query::Continuous;
+use nearmiss::research::{Bv, Certified, CertifiedPrecision, QueryExt, WithSolver};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use rand::rngs::SmallRng;

@@ -2,6 +2,7 @@
 
 use nearmiss::Query;
 use nearmiss::query::QueryKind;
+use nearmiss::research::QueryExt;
 
 #[test]
 fn a_distance_is_a_length_above_nothing() {

@@ -4,7 +4,8 @@
 use super::asking;
 use nearmiss::contacts::{Contact, Kind, Status};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Bv, QueryKind, Solver};
+use nearmiss::query::QueryKind;
+use nearmiss::research::{Bv, QueryExt, Solver};
 use nearmiss::{Contacts, Query};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};

@@ -1,6 +1,6 @@
 //! Gaps of volumes: never above the distance of what they are around.
 
-use nearmiss_kernels::bv::{Aabb, Axes, Linear, Obb, Volume};
+use nearmiss_kernels::bv::{Aabb, Linear, Obb, Volume};
 use nearmiss_kernels::math::tolerance::{APART_DOWN, U32};
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_lab::oracle::Triangle;
@@ -40,7 +40,7 @@ fn measure<V: Volume>(name: &str) -> (f64, u32) {
         if i % 3 == 0 {
             // Around more than them.
             let [more, other] = pair(&mut r, i % 7);
-            (a, b) = (a.merge(&of(&more), Axes::PCA), of(&other).merge(&b, Axes::CHILD));
+            (a, b) = (a.merge(&of(&more)), of(&other).merge(&b));
         }
         let gap = a.apart(&b);
         assert_eq!(gap.to_bits(), a.apart(&b).to_bits());

@@ -1,7 +1,7 @@
 //! Lists with what counts them: each is counted by its own counter alone, past its end too, and no list is no memory.
 
 use super::*;
-use nearmiss::pipeline::counts::{Counts, FrameCounters};
+use nearmiss::research::pipeline::counts::{Counts, FrameCounters};
 use nearmiss_kernels::abi::{Counter, Counters, Output, counter};
 
 /// Entries that the lists have room for.

@@ -1,6 +1,6 @@
 //! Wild triangles, still and moving, and the volumes around them.
 
-use nearmiss_kernels::bv::{Axes, Volume};
+use nearmiss_kernels::bv::Volume;
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_lab::scene::Rng;
 
@@ -74,9 +74,9 @@ pub fn leaf<V: Volume, R: Real>([t0, t1]: Swept<R>) -> V {
 }
 
 /// Merges pairwise until one is left: levels of a tree.
-pub fn root<V: Volume>(mut level: Vec<V>, axes: Axes) -> V {
+pub fn root<V: Volume>(mut level: Vec<V>) -> V {
     while level.len() > 1 {
-        level = level.chunks(2).map(|two| two[0].merge(two.last().expect("one"), axes)).collect();
+        level = level.chunks(2).map(|two| two[0].merge(two.last().expect("one"))).collect();
     }
     level[0]
 }

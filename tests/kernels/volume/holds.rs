@@ -1,14 +1,12 @@
 //! Volumes hold what they were made of, in exact arithmetic, through every level; and what does not hold is noticed.
 
 use super::build::{Swept, Wild, leaf, root};
-use nearmiss_kernels::bv::{Aabb, Axes, Contain, Linear, Obb, Volume};
+use nearmiss_kernels::bv::{Aabb, Contain, Linear, Obb, Volume};
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_lab::oracle::exact;
 use nearmiss_lab::scene::Rng;
 use num_rational::BigRational;
 use num_traits::Signed;
-
-const RULES: [Axes; 2] = [Axes::PCA, Axes::CHILD];
 
 /// Whether the volume holds the triangle at every t.
 fn holds<V: Contain, R: Real>(volume: &V, [t0, t1]: &Swept<R>) -> bool {
@@ -32,11 +30,9 @@ fn check<V: Contain, R: Real>(cases: usize, levels: u32, largest: f64) {
         for (volume, triangle) in leaves.iter().zip(&triangles) {
             assert!(holds(volume, triangle), "{volume:?} of {triangle:?}");
         }
-        for axes in RULES {
-            let whole = root(leaves.clone(), axes);
-            for triangle in &triangles {
-                assert!(holds(&whole, triangle), "{axes:?} {whole:?} of {triangle:?}");
-            }
+        let whole = root(leaves);
+        for triangle in &triangles {
+            assert!(holds(&whole, triangle), "{whole:?} of {triangle:?}");
         }
     }
 }
@@ -234,12 +230,12 @@ fn a_faulty_merge_is_noticed() {
         let [a, b] = [(); 2].map(|()| wild.triangle::<f32>());
         let both = |v: &dyn Fn(&Swept<f32>) -> bool| v(&a) && v(&b);
         let (p, q): (Obb, Obb) = (leaf(a), leaf(b));
-        assert!(both(&|t| holds(&p.merge(&q, Axes::PCA), t)));
+        assert!(both(&|t| holds(&p.merge(&q), t)));
         let bad = merged_with_else_if(&p, &q);
         else_if += usize::from(!both(&|t| holds(&bad, t)));
-        forgotten += usize::from(!both(&|t| holds(&p.merge(&p, Axes::PCA), t)));
+        forgotten += usize::from(!both(&|t| holds(&p.merge(&p), t)));
         let (p, q): (Linear, Linear) = (leaf(a), leaf(b));
-        let first = Linear { lo1: p.lo1, hi1: p.hi1, ..p.merge(&q, Axes::PCA) };
+        let first = Linear { lo1: p.lo1, hi1: p.hi1, ..p.merge(&q) };
         still_end += usize::from(!both(&|t| holds(&first, t)));
     }
     assert!(else_if > 300 && forgotten > 900 && still_end > 900, "{else_if} {forgotten} {still_end}");
@@ -257,11 +253,9 @@ fn ends_of_the_range_are_held() {
         assert!(holds(&Aabb::still(corners), &still) && holds(&Aabb::moving(corners, moved), &swept));
         assert!(holds(&Linear::still(corners), &still) && holds(&Linear::moving(corners, moved), &swept));
         assert!(holds(&Obb::still(corners), &still) && holds(&Obb::moving(corners, moved), &swept));
-        for axes in RULES {
-            let small = Obb::still([Vec3([0.0f32, 1.0, 2.0]); 3]);
-            assert!(holds(&Obb::still(corners).merge(&small, axes), &still));
-            assert!(small.merge(&Obb::still(corners), axes).overlaps(&small));
-        }
+        let small = Obb::still([Vec3([0.0f32, 1.0, 2.0]); 3]);
+        assert!(holds(&Obb::still(corners).merge(&small), &still));
+        assert!(small.merge(&Obb::still(corners)).overlaps(&small));
         assert!(Obb::still(corners).overlaps(&Obb::moving(corners, moved)));
         assert!(Linear::still(corners).overlaps(&Linear::moving(corners, moved)));
     }

@@ -1,7 +1,7 @@
 //! The checker of trees: one planted fault a clause, then every fault of one number.
 
 use nearmiss_kernels::abi::{LEAF, Link, Node};
-use nearmiss_kernels::bv::{Aabb, Axes};
+use nearmiss_kernels::bv::Aabb;
 use nearmiss_kernels::bvh::{self, Violation, check, check_volumes};
 
 /// A tree of five triangles, the body's first being 10: three levels of inner nodes, a leaf beside an inner node.
@@ -79,7 +79,7 @@ impl Tree {
             place: &|triangle| triangle.checked_sub(FIRST).map(|place| place as usize),
         };
         check(&tree, &mut vec![false; self.leaf_nodes.len()])?;
-        check_volumes(&self.links, &self.nodes, (1, Axes::PCA), box_of, |_, _| None)
+        check_volumes(&self.links, &self.nodes, 1, box_of, |_, _| None)
     }
 
     /// What the checker says of a tree with a fault planted in it.
@@ -197,7 +197,7 @@ fn t7_a_fit_that_is_none() {
             volume.hi[1] += f32::from(u8::from(fault == Some(node)));
             Some(volume)
         };
-        check_volumes(&tree.links, &tree.nodes, (1, Axes::PCA), box_of, fit)
+        check_volumes(&tree.links, &tree.nodes, 1, box_of, fit)
     };
     assert_eq!(fitted(None), Ok(()));
     for node in [2, 6] {

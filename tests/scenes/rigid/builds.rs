@@ -1,7 +1,8 @@
 //! Tiles and trees are built where bodies are first put.
 
 use super::*;
-use nearmiss::query::{Broad, Rebuild};
+use nearmiss::query::Rebuild;
+use nearmiss::research::{Broad, QueryExt};
 use nearmiss_lab::OneQueryOnSeveral;
 
 /// Spheres that all lie in one place until they get their poses, and those.

@@ -5,6 +5,7 @@ use super::*;
 use nearmiss::Device;
 use nearmiss::device::Buffer;
 use nearmiss::query::QueryKind;
+use nearmiss::research::KindExt;
 use nearmiss::scene::{DeviceMotion, DevicePose, DeviceRows, Number};
 use nearmiss_lab::OneQueryOnSeveral;
 

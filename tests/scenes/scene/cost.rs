@@ -1,7 +1,8 @@
 //! What a scene costs: what moves, in launches that no number of bodies changes, and memory for what is there alone.
 
 use super::*;
-use nearmiss::query::{Near, Refit, Search, Traversal};
+use nearmiss::query::Near;
+use nearmiss::research::{KindExt, QueryExt, Refit, Search, Traversal};
 
 /// A crate of twelve triangles; the pile is `n` of them in a row, each a little into the next.
 pub fn pile(n: usize, kind: fn(Mesh) -> Body, environments: bool) -> Scene {

@@ -2,7 +2,7 @@
 
 use super::*;
 use nearmiss::contacts::Rows;
-use nearmiss::query::Broad;
+use nearmiss::research::{Broad, DetectorExt, QueryExt};
 use nearmiss_lab::OneQueryOnSeveral;
 
 fn queries() -> Vec<Query> {

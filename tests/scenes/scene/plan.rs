@@ -4,7 +4,7 @@ use super::cost::pile;
 use super::*;
 use nearmiss::device::Device;
 use nearmiss::plan::Plan;
-use nearmiss::query::{FrontShape, QueueShape, Refit, StealShape, Traversal};
+use nearmiss::research::{FrontShape, QueryExt, QueueShape, Refit, StealShape, Traversal};
 
 /// A body of each kind, and where a frame puts those that move.
 fn three() -> Scene {

@@ -3,7 +3,7 @@
 
 use super::*;
 use nearmiss::Error;
-use nearmiss::query::Traversal;
+use nearmiss::research::{QueryExt, Traversal};
 use nearmiss_io::{Format, MeshFile};
 
 #[derive(Debug, PartialEq)]

@@ -2,7 +2,8 @@
 
 use super::pairwise::{differ, two_by_two};
 use super::*;
-use nearmiss::query::{Bv, Certified, Continuous};
+use nearmiss::query::Continuous;
+use nearmiss::research::{Bv, Certified, DetectorExt, QueryExt, WithSolver};
 use support::{between, ways};
 
 /// Bodies of very different sizes about one place, of every kind; in doubles where asked.
@@ -163,7 +164,7 @@ fn bodies_that_come_bring_their_tolerances_and_moving_changes_none() {
     assert_eq!(both(&mut named), [0.125; 2]);
 }
 
-fn summary(detector: &mut OneQuery) -> nearmiss::contacts::Summary {
+fn summary(detector: &mut OneQuery) -> nearmiss::research::Summary {
     let found = detector.detect().expect("an answer");
     detector.summary(&found)
 }

@@ -4,6 +4,8 @@
 use super::*;
 use nearmiss::Detector;
 use nearmiss::device::emulator::{Emulator, Mode, Order};
+use nearmiss::research::KindExt;
+use nearmiss::research::StatsExt;
 use std::collections::BTreeSet;
 
 /// Queues so small that units spill in every round: rounds and lengths depend on the schedule.
@@ -95,7 +97,7 @@ impl Seen {
                     found.rows == wanted.rows && found.starts_crossing == wanted.starts_crossing;
                 seen.counts_crossing = status.crossing == wanted.starts_crossing.unwrap_or(u64::MAX);
                 self.short += u32::from(status.short > 0);
-                self.rounds.insert(found.stats.queues.rounds);
+                self.rounds.insert(found.stats.queues().rounds);
             }
             self.faults.extend(seen.broken().map(|law| format!("{law}: {seen:?}, {query:?}")));
         }

@@ -1,13 +1,13 @@
 //! The ends of the descent: with the flag for a front, a complete cut, whatever the queues.
 
 use super::*;
-use nearmiss::pipeline::counts::FrameCounters;
+use nearmiss::research::pipeline::counts::FrameCounters;
 use nearmiss_kernels::abi::{
     FilterArgs, LEAF, Link, Node, Pair, PairArgs, QueueArgs, QueueFlags, ROOT, Span, StealArgs, StealFlags,
     TraverseFlags,
 };
 use nearmiss_kernels::abi::{counter, pool};
-use nearmiss_kernels::bv::{Aabb, Axes, Volume};
+use nearmiss_kernels::bv::{Aabb, Volume};
 use nearmiss_kernels::entry::{traverse_queue, traverse_steal};
 use nearmiss_kernels::queue::bvtt;
 use std::collections::HashSet;
@@ -41,7 +41,7 @@ fn tree(leaves: u32, length: f32) -> (Vec<Node<Aabb>>, Vec<u32>) {
         }
         let link = nodes[at].link as usize;
         let (left, right) = (nodes[link].volume, nodes[link + 1].volume);
-        nodes[at].volume = Volume::merge(&left, &right, Axes::PCA);
+        nodes[at].volume = Volume::merge(&left, &right);
     }
     (nodes, parents)
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use nearmiss::device::emulator::{Emulator, Mode};
+use nearmiss::research::StatsExt;
 
 /// Soup and cloth, self and between, with many candidates.
 fn crowds() -> [Vec<Body>; 2] {
@@ -34,7 +35,7 @@ fn any_number_of_queues() {
     for bodies in crowds() {
         for cores in [1, 2, 3, 30, 64].map(Some) {
             for shape in profiles() {
-                let queues = same(&bodies, Traversal::Queue(QueueShape { cores, ..shape })).stats.queues;
+                let queues = same(&bodies, Traversal::Queue(QueueShape { cores, ..shape })).stats.queues();
                 assert!(queues.rounds > 0 && queues.longest <= 3_000, "{queues:?}");
             }
             for eager in [false, true] {
@@ -59,13 +60,13 @@ fn any_room_on_chip() {
             for shape in profiles() {
                 for take in [1, 64] {
                     let shape = QueueShape { local, take, cores: Some(7), ..shape };
-                    let queues = same(&bodies, Traversal::Queue(shape)).stats.queues;
+                    let queues = same(&bodies, Traversal::Queue(shape)).stats.queues();
                     assert!(local > 1 || queues.spills > 0, "{shape:?} {queues:?}");
                 }
             }
             let shape =
                 StealShape { local, cores: Some(4), segment: 2_000, pool: Some(300), tries: 4, eager: true };
-            let queues = same(&bodies, Traversal::Steal(shape)).stats.queues;
+            let queues = same(&bodies, Traversal::Steal(shape)).stats.queues();
             assert!(local > 2 || queues.spills > 0, "{shape:?} {queues:?}");
         }
     }
@@ -119,7 +120,7 @@ fn any_share_of_idle_queues() {
                     found(sanitizer(ORDERS[1]), &bodies, by(Traversal::Queue(shape), QueryKind::Discrete))
                         .1
                         .stats
-                        .queues
+                        .queues()
                 });
                 assert!(at_once.rounds > never.rounds, "{shape:?}: {at_once:?}, {never:?}");
             }
@@ -151,7 +152,7 @@ fn blocks_that_interleave_lose_nothing() {
                     found(Device::emulator(device), &bodies, by(traversal, QueryKind::Discrete));
                 assert_eq!(print, truth, "{traversal:?}, {seed}");
                 stolen += if traversal == Traversal::Steal(steal(false)) {
-                    contacts.stats.queues.stolen
+                    contacts.stats.queues().stolen
                 } else {
                     0
                 };
@@ -173,7 +174,7 @@ fn what_is_offered_is_taken_and_a_full_pool_loses_nothing() {
                 eager: true,
                 ..StealShape::native()
             };
-            let queues = same(&bodies, Traversal::Steal(shape)).stats.queues;
+            let queues = same(&bodies, Traversal::Steal(shape)).stats.queues();
             // A chunk is a unit at least, and 64 at most.
             let (least, most) = (pool.min(100) as u64, 64 * pool as u64);
             assert!((least..=most).contains(&queues.stolen), "{pool}: {queues:?}");
@@ -189,7 +190,7 @@ fn a_frame_launches_the_rounds_of_the_one_before() {
         let mut detector = OneQuery::new(device.clone(), crowds()[0].clone(), query).expect("a detector");
         let frame = |detector: &mut OneQuery| {
             let before = device.launches();
-            let rounds = detector.detect().expect("an answer").stats.queues.rounds;
+            let rounds = detector.detect().expect("an answer").stats.queues().rounds;
             (device.launches() - before, rounds)
         };
         frame(&mut detector);
@@ -232,7 +233,7 @@ fn fewer_rounds_planned_than_needed_are_noticed() {
         let query = by(Traversal::Queue(shape), QueryKind::Discrete);
         let mut detector =
             OneQuery::new(device, vec![support::still(&apart, &faces)], query).expect("a detector");
-        let few = detector.detect().expect("an answer").stats.queues.rounds;
+        let few = detector.detect().expect("an answer").stats.queues().rounds;
         assert_eq!(detector.detect().expect("an answer").len(), 0);
         assert!(!watched || detector.reruns() == 0);
         detector.move_to(0, support::still(&crowd, &faces)).expect("the same mesh");
@@ -242,7 +243,7 @@ fn fewer_rounds_planned_than_needed_are_noticed() {
         assert_eq!(detector.detect().expect("an answer").hash(), many.hash());
         // Under the sanitizer the same frame takes the same rounds; elsewhere blocks run dry sooner or later.
         if watched {
-            assert!(many.stats.queues.rounds > few + 2 && reruns > 0, "{few}, {:?}", many.stats.queues);
+            assert!(many.stats.queues().rounds > few + 2 && reruns > 0, "{few}, {:?}", many.stats.queues());
             assert_eq!(detector.reruns(), reruns, "now the plan is long enough");
         }
     }

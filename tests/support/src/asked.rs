@@ -1,7 +1,8 @@
 //! Queries by the names of kinds and solvers, for tests of many.
 
 use nearmiss::Query;
-use nearmiss::query::{Certified, Continuous, ContinuousSolver, Earliest, QueryKind, Solver};
+use nearmiss::query::{Continuous, Earliest, QueryKind};
+use nearmiss::research::{Certified, ContinuousSolver, QueryExt, Solver, WithSolver};
 
 /// The query of a kind with all choices at their defaults. A near query has no default distance.
 pub fn of(kind: QueryKind) -> Query {

@@ -3,7 +3,7 @@
 
 use nearmiss::contacts::{Contact, Kind, Status};
 use nearmiss::mesh::{Body, Topology};
-use nearmiss::query::Solver;
+use nearmiss::research::Solver;
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::cubic::Moving;
 use nearmiss_kernels::prim::inclusion::{Params, Verdict};

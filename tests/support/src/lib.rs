@@ -21,7 +21,10 @@ pub use data::data;
 use nearmiss::device::Backend;
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Broad, Bv, FrontShape, QueryKind, QueueShape, Refit, Search, StealShape, Traversal};
+use nearmiss::query::QueryKind;
+use nearmiss::research::{
+    Broad, Bv, FrontShape, KindExt, QueryExt, QueueShape, Refit, Search, StealShape, Traversal,
+};
 use nearmiss::scene::{CollisionFilter, Scene};
 use nearmiss::{Device, Error, Query};
 use nearmiss_io::MeshFile;
@@ -75,7 +78,7 @@ pub fn walks_of(kind: QueryKind) -> Vec<Option<Traversal>> {
 
 /// The query with every volume, every walk and every refit of trees, and by tiles.
 pub fn ways(query: Query) -> impl Iterator<Item = Query> {
-    let refits = [Refit::Levels, Refit::Treelets, Refit::BottomUp];
+    let refits = [Refit::Levels, Refit::Treelets];
     let walks = move || walks_of(query.kind());
     let of_trees = move |bv| {
         walks().into_iter().flat_map(move |traversal| {

@@ -3,10 +3,10 @@
 use super::cases::inputs;
 use crate::args::Question;
 use crate::detect::middle;
+use nearmiss::Stages;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
-use nearmiss::pipeline::Stages;
 use nearmiss::scene::Scene;
 use nearmiss_lab::OneQuery;
 use serde::Serialize;

@@ -2,8 +2,10 @@
 
 use crate::args::Question;
 use nearmiss::mesh::Body;
-use nearmiss::pipeline::of_edges;
-use nearmiss::query::{Certified, Continuous, Query};
+use nearmiss::query::{Continuous, Query};
+use nearmiss::research::Certified;
+use nearmiss::research::WithSolver;
+use nearmiss::research::pipeline::of_edges;
 
 impl Question {
     /// Whether it fits the bodies. Bodies at rest have no step, one body has no distance, and points

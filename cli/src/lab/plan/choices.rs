@@ -2,7 +2,9 @@
 
 use nearmiss::device::Device;
 use nearmiss::mesh::Body;
-use nearmiss::query::{Balance, Broad, Bv, Certified, Query, QueueShape, Traversal};
+use nearmiss::query::Query;
+use nearmiss::research::QueryExt;
+use nearmiss::research::{Balance, Broad, Bv, Certified, QueueShape, Traversal};
 use nearmiss::words::counted;
 use nearmiss_lab::OneQuery;
 use std::fmt::Write;

@@ -3,6 +3,7 @@
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::plan::{Plan, PlannedStage};
+use nearmiss::research::QueryExt;
 use nearmiss::words::counted;
 use nearmiss_lab::OneQuery;
 use serde::Serialize;
@@ -64,7 +65,7 @@ pub fn json(detector: &mut OneQuery, device: &Device, plan: Option<&Plan>) -> Re
         backend: &'static str,
         query: nearmiss::query::QueryKind,
         bounding_volume: &'static str,
-        solver: nearmiss::query::Solver,
+        solver: nearmiss::research::Solver,
         tolerance: Option<f64>,
         #[serde(skip_serializing_if = "Option::is_none")]
         largest_tolerance: Option<f64>,

@@ -30,7 +30,6 @@ impl<V: Kernels> Tiles<V> {
             leaves: &self.leaves.read(self.leaves.len())?,
             nodes: &self.nodes.read(self.nodes.len())?,
             filters: &filters,
-            axes: self.axes,
         };
         let fixed = self.fixed.as_ref().map_or(&[][..], |fixed| &fixed.bodies);
         let bodies = [self.sorted.bodies(), fixed];

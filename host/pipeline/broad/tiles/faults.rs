@@ -47,7 +47,7 @@ fn checked_of(bodies: &[Body], fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), E
         records: records.span(),
         is_submitted: false,
     };
-    let mut tiles = Tiles::<Aabb>::new(&device, &layout, (Order::DEFAULT, Axes::PCA, 0.01))?;
+    let mut tiles = Tiles::<Aabb>::new(&device, &layout, 0.01)?;
     tiles.construct(&given, &layout)?;
     BroadPhase::fit(&mut tiles, &given)?;
     BroadPhase::refit(&mut tiles, &given)?;
@@ -88,14 +88,8 @@ fn a_triangle_outside_is_named() {
         let mut nodes = vec![leaf(0); levels.first(levels.count) as usize];
         // The second tile is too small for its triangles.
         nodes[1].volume = volume(0.0, 0.5);
-        let tiles = tiles::Tiles {
-            levels,
-            triangles: [count, 0],
-            leaves: &leaves,
-            nodes: &nodes,
-            filters: &[],
-            axes: Axes::PCA,
-        };
+        let tiles =
+            tiles::Tiles { levels, triangles: [count, 0], leaves: &leaves, nodes: &nodes, filters: &[] };
         let at = |triangle: u32| if triangle < 32 { by } else { 0.5 };
         tiles::check_held(&tiles, |triangle| [[Vec3([0.0; 3]), Vec3([at(triangle); 3])]; 3])
     };

@@ -7,7 +7,7 @@ mod faults;
 mod rims;
 mod static_margin;
 
-use super::sorted::Sorted;
+use super::sorted::{Sorted, SortedFor};
 use super::{BroadContext, BroadPhase, Candidates, Which};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
@@ -16,12 +16,10 @@ use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::{launch, purpose};
-use crate::query::Order;
 use nearmiss_kernels::abi::{
     BodyRecord, FilterArgs, FitTilesArgs, NONE, Node, NodeFilter, Pair, RefitTilesArgs, Span,
     TileFiltersArgs, TilePairsArgs, TileTrianglesArgs, TreeBody, counter,
 };
-use nearmiss_kernels::bv::Axes;
 use nearmiss_kernels::bvh::tiles::{self, Levels, Part, TILE};
 use nearmiss_kernels::entry::{self, Entry, Kernels};
 use nearmiss_kernels::math::Vec3;
@@ -73,8 +71,6 @@ pub struct Tiles<V> {
     work: Option<Buffer<u64>>,
     /// End of the last share's tiles, and how many pairs of tiles it listed.
     listed: (u32, u64),
-    order: Order,
-    axes: Axes,
     margin: f32,
 }
 
@@ -84,11 +80,7 @@ impl<V: Kernels> Tiles<V> {
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(
-        device: &Device,
-        layout: &Layout,
-        (order, axes, margin): (Order, Axes, f32),
-    ) -> Result<Self, Error> {
+    pub fn new(device: &Device, layout: &Layout, margin: f32) -> Result<Self, Error> {
         let triangles =
             layout.trees.each_ref().map(|bodies| bodies.iter().map(|&body| layout.triangles(body).1).sum());
         let levels = Levels::of(triangles);
@@ -107,9 +99,8 @@ impl<V: Kernels> Tiles<V> {
         rims.clear()?;
         let room = PAIRS_A_TILE * triangles[MOVING].div_ceil(TILE) as usize;
         Ok(Tiles {
-            sorted: Sorted::new(device, layout, &layout.trees[MOVING], (Some(order), 0))?,
+            sorted: Sorted::new(device, layout, &layout.trees[MOVING], SortedFor::Tiles)?,
             listed: (0, 0),
-            order,
             fixed: None,
             static_margin: StaticMargin::default(),
             leaves,
@@ -123,7 +114,6 @@ impl<V: Kernels> Tiles<V> {
             work: None,
             levels,
             triangles,
-            axes,
             margin,
         })
     }
@@ -173,8 +163,8 @@ impl<V: Kernels> Tiles<V> {
             nodes: self.nodes.span(),
             tile: self.levels.part(0, part, self.triangles[part]).first,
             above: above.first,
-            axes: self.axes,
             margin,
+            pad: 0,
         };
         launch::blocks::<entry::fit_tiles<R, V>>(given.device, above.count, &args)
     }
@@ -203,8 +193,6 @@ impl<V: Kernels> Tiles<V> {
                 below_count: below.count,
                 tile: of(0).first,
                 tiles: tiles::below(level),
-                axes: self.axes,
-                pad: 0,
             };
             launch::each::<entry::refit_tiles<V>>(device, own.count as usize * tiles::FAN as usize, &args)?;
         }
@@ -247,7 +235,7 @@ impl<R: Precision, V: Kernels> BroadPhase<R> for Tiles<V> {
         self.sorted.construct(device, frames, faces)?;
         self.filter(device, MOVING, self.sorted.triangles())?;
         if self.fixed.is_none() && self.triangles[FIXED] > 0 {
-            let mut sorted = Sorted::new(device, layout, &layout.trees[FIXED], (Some(self.order), 0))?;
+            let mut sorted = Sorted::new(device, layout, &layout.trees[FIXED], SortedFor::Tiles)?;
             sorted.construct(device, frames, faces)?;
             self.filter(device, FIXED, sorted.triangles())?;
             let (bodies, triangles) = sorted.into_order();

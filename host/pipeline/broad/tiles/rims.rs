@@ -31,8 +31,8 @@ impl<V: Kernels> Tiles<V> {
                 count: own.count,
                 below: below.first,
                 below_count: below.count,
-                axes: self.axes,
                 margin: self.margin,
+                pad: 0,
             };
             launch::each::<entry::fit_rims<R, V>>(given.device, own.count as usize, &args)?;
         }

@@ -17,7 +17,6 @@ use crate::query::Refit;
 use nearmiss_kernels::abi::{
     BodyRecord, FilterArgs, GraftArgs, Link, Node, NodeFilter, ROOT, Span, TraverseFlags, TreeBody, grafted,
 };
-use nearmiss_kernels::bv::Axes;
 use nearmiss_kernels::bvh;
 use nearmiss_kernels::entry::{self, Kernels};
 use nearmiss_kernels::math::Vec3;
@@ -48,18 +47,13 @@ impl<V: Kernels> Forest<V> {
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(
-        device: &Device,
-        layout: &Layout,
-        refit: Refit,
-        (axes, margin): (Axes, f32),
-    ) -> Result<Forest<V>, Error> {
+    pub fn new(device: &Device, layout: &Layout, refit: Refit, margin: f32) -> Result<Forest<V>, Error> {
         let [moving, fixed] = &layout.trees;
         let leaves: u32 = fixed.iter().map(|&body| layout.triangles(body).1).sum();
         let room = if leaves > 0 { Room::Beside(leaves) } else { Room::Alone };
-        let groups = V::group(axes) > 0;
+        let groups = V::GROUP > 0;
         let tree = Tree::new(device, &TreeSpec { layout, bodies: moving, room, refit, groups })?;
-        let volumes = Volumes::new(&device.of(purpose::VOLUMES), &tree, (axes, margin))?;
+        let volumes = Volumes::new(&device.of(purpose::VOLUMES), &tree, margin)?;
         let fixed = (leaves > 0).then(|| Fixed {
             bodies: fixed.clone(),
             layout: (Vec::new(), leaves),
@@ -79,13 +73,13 @@ impl<V: Kernels> Forest<V> {
         self.tree.construct::<R>(device, frames, (faces, records))?;
         match &mut self.fixed {
             Some(fixed) if fixed.starts.is_empty() => {
-                let groups = V::group(self.volumes.axes()) > 0;
+                let groups = V::GROUP > 0;
                 let Fixed { bodies, refit, .. } = &*fixed;
                 let plan = TreeSpec { layout, bodies, room: Room::Alone, refit: *refit, groups };
                 let mut tree = Tree::new(device, &plan)?;
                 tree.construct::<R>(device, frames, (faces, records))?;
                 tree.learn_levels()?;
-                let volumes = Volumes::<V>::new(device, &tree, (self.volumes.axes(), fixed.margin))?;
+                let volumes = Volumes::<V>::new(device, &tree, fixed.margin)?;
                 volumes.fit(device, &tree, frames, faces)?;
                 volumes.refit(device, &tree, frames, faces)?;
                 let args = GraftArgs {

@@ -20,7 +20,6 @@ use crate::pipeline::purpose;
 use crate::query::Query;
 use forest::Forest;
 use nearmiss_kernels::abi::Output;
-use nearmiss_kernels::bv::Axes;
 use nearmiss_kernels::entry::Kernels;
 use nearmiss_kernels::math::Vec3;
 use walk::{Walk, WalkContext, walk};
@@ -37,15 +36,10 @@ impl<R: Precision, V: Kernels> Trees<R, V> {
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(
-        device: &Device,
-        layout: &Layout,
-        query: &Query,
-        (axes, margin): (Axes, f32),
-    ) -> Result<Self, Error> {
+    pub fn new(device: &Device, layout: &Layout, query: &Query, margin: f32) -> Result<Self, Error> {
         let refit = query.refit_on(device.is_gpu());
         Ok(Trees {
-            forest: Forest::new(&device.of(purpose::TREE), layout, refit, (axes, margin))?,
+            forest: Forest::new(&device.of(purpose::TREE), layout, refit, margin)?,
             walk: walk(&device.of(purpose::WALK), query, layout.moving_triangles())?,
         })
     }

@@ -4,7 +4,7 @@ use super::treelets::RefitPlan;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::broad::broken;
-use crate::pipeline::broad::sorted::{Sorted, place};
+use crate::pipeline::broad::sorted::{Sorted, SortedFor, place};
 use crate::pipeline::layout::Layout;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::sorter::{counted, words};
@@ -114,7 +114,7 @@ impl Tree {
         // Pairs of siblings begin behind the root; unused words before it count too.
         let pairs = n + room.root() as usize / 2;
         let all = n + room.others() as usize;
-        let way = RefitPlan::new(&device.of(purpose::REFIT), refit, count, pairs)?;
+        let way = RefitPlan::new(&device.of(purpose::REFIT), refit, count)?;
         let scratch = device.of(purpose::SCRATCH);
         let mixed = if layout.hubs.is_empty() { 0 } else { inner };
         let zeroed = words(device, count) + mixed + way.zeroed();
@@ -128,7 +128,7 @@ impl Tree {
             hubs: device.of(purpose::FILTERS).upload(&layout.hubs)?,
             way,
             starts: Vec::new(),
-            sorted: Sorted::new(device, layout, bodies, (None, zeroed))?,
+            sorted: Sorted::new(device, layout, bodies, SortedFor::Tree { extra: zeroed })?,
             count,
             room,
             scratch: Scratch {

@@ -1,4 +1,4 @@
-//! What a refit needs beside the tree: the plan of its treelets, or counters of arrivals.
+//! What a refit needs beside the tree: the plan of its treelets.
 
 use crate::device::{Buffer, Device};
 use crate::error::Error;
@@ -14,21 +14,17 @@ pub enum RefitPlan {
     Levels,
     /// One block per treelet.
     Treelets(Box<Plan>),
-    /// Whoever comes second to a pair goes on: how many came by each pair, in all frames.
-    BottomUp(Buffer<u64>),
 }
 
 impl RefitPlan {
-    /// Allocates the plan for a tree of `count` leaves (at least one). Its pairs of siblings have
-    /// numbers below `pairs`.
+    /// Allocates the plan for a tree of `count` leaves (at least one).
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(device: &Device, refit: Refit, count: u32, pairs: usize) -> Result<RefitPlan, Error> {
+    pub fn new(device: &Device, refit: Refit, count: u32) -> Result<RefitPlan, Error> {
         Ok(match refit {
             Refit::Levels => RefitPlan::Levels,
             Refit::Treelets => RefitPlan::Treelets(Box::new(Plan::new(device, count)?)),
-            Refit::BottomUp => RefitPlan::BottomUp(device.buffer(pairs)?),
         })
     }
 
@@ -36,7 +32,7 @@ impl RefitPlan {
     pub fn zeroed(&self) -> usize {
         match self {
             RefitPlan::Treelets(plan) => plan.treelets.len() + TOPS,
-            RefitPlan::Levels | RefitPlan::BottomUp(_) => 0,
+            RefitPlan::Levels => 0,
         }
     }
 
@@ -47,7 +43,7 @@ impl RefitPlan {
                 let begins = plan.treelets.len() as u64;
                 [zeroed.part(0, begins), zeroed.part(begins, TOPS as u64)]
             }
-            RefitPlan::Levels | RefitPlan::BottomUp(_) => [Span::EMPTY; 2],
+            RefitPlan::Levels => [Span::EMPTY; 2],
         }
     }
 
@@ -55,7 +51,7 @@ impl RefitPlan {
     pub fn leaf_places(&self) -> Span<LeafPlace> {
         match self {
             RefitPlan::Treelets(plan) => plan.leaf_places.span(),
-            RefitPlan::Levels | RefitPlan::BottomUp(_) => Span::EMPTY,
+            RefitPlan::Levels => Span::EMPTY,
         }
     }
 
@@ -67,7 +63,6 @@ impl RefitPlan {
         match self {
             RefitPlan::Levels => Ok(()),
             RefitPlan::Treelets(plan) => plan.make(device, tree),
-            RefitPlan::BottomUp(arrivals) => arrivals.clear(),
         }
     }
 }
@@ -143,7 +138,7 @@ mod tests {
     use crate::pipeline::broad::trees::{Tree, TreeSpec, Volumes};
     use crate::samples::soup;
     use nearmiss_kernels::abi::{Point, Positions};
-    use nearmiss_kernels::bv::{Aabb, Axes, Obb};
+    use nearmiss_kernels::bv::{Aabb, Obb};
     use nearmiss_kernels::entry::Kernels;
     use nearmiss_kernels::math::Vec3;
 
@@ -161,10 +156,10 @@ mod tests {
         let faces = device.upload(body.faces())?;
         let frames = Positions { still: points.span(), moving: Span::EMPTY };
         let layout = Layout::single(2_000);
-        let mut tree = Tree::new(&device, &TreeSpec::alone(&layout, refit, V::group(Axes::PCA) > 0))?;
+        let mut tree = Tree::new(&device, &TreeSpec::alone(&layout, refit, V::GROUP > 0))?;
         tree.construct::<f32>(&device, frames, (faces.span(), Span::EMPTY))?;
         tree.learn_levels()?;
-        let volumes = Volumes::<V>::new(&device, &tree, (Axes::PCA, 0.0))?;
+        let volumes = Volumes::<V>::new(&device, &tree, 0.0)?;
         let refit = |tree: &Tree| {
             volumes.fit(&device, tree, frames, faces.span())?;
             volumes.refit(&device, tree, frames, faces.span())
@@ -180,7 +175,7 @@ mod tests {
     fn plan(tree: &mut Tree) -> &mut Plan {
         match &mut tree.way {
             RefitPlan::Treelets(plan) => plan,
-            RefitPlan::Levels | RefitPlan::BottomUp(_) => panic!("no plan was asked for"),
+            RefitPlan::Levels => panic!("no plan was asked for"),
         }
     }
 
@@ -193,7 +188,7 @@ mod tests {
 
     #[test]
     fn all_ways_pass_where_nothing_is_planted() {
-        for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
+        for refit in [Refit::Levels, Refit::Treelets] {
             checked::<Aabb>(refit, |_| ()).expect("sound volumes");
             checked::<Obb>(refit, |_| ()).expect("sound volumes");
         }
@@ -225,7 +220,7 @@ mod tests {
     /// The first leaf of a pair is wrong: a node is fitted to too many points, too few, or none.
     #[test]
     fn a_fit_to_other_points_is_noticed() {
-        for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
+        for refit in [Refit::Levels, Refit::Treelets] {
             let error = checked::<Obb>(refit, |tree| {
                 let mut firsts = tree.firsts.read(tree.firsts.len()).expect("read");
                 *firsts.last_mut().expect("a pair") -= 1;
@@ -241,20 +236,6 @@ mod tests {
         let error = checked::<Aabb>(Refit::Treelets, |tree| {
             let plan = plan(tree);
             plan.ticket.write(&[u64::from(plan.blocks()) - 2]).expect("written");
-        });
-        assert!(error.expect_err("noticed").to_string().contains("Merge"));
-    }
-
-    #[test]
-    fn who_comes_first_and_goes_on_is_noticed() {
-        let error = checked::<Aabb>(Refit::BottomUp, |tree| match &mut tree.way {
-            RefitPlan::BottomUp(arrivals) => {
-                let mut counts = arrivals.read(arrivals.len()).expect("read");
-                assert!(counts[1..].iter().all(|&n| n == 2), "each pair is passed twice a frame");
-                counts.iter_mut().for_each(|n| *n += 1);
-                arrivals.write(&counts).expect("written");
-            }
-            RefitPlan::Levels | RefitPlan::Treelets(_) => panic!("no counters were asked for"),
         });
         assert!(error.expect_err("noticed").to_string().contains("Merge"));
     }

@@ -7,10 +7,7 @@ use crate::error::Error;
 use crate::pipeline::broad::{broken, leaf_volume};
 use crate::pipeline::launch;
 use crate::pipeline::precision::Precision;
-use nearmiss_kernels::abi::{
-    BottomUpArgs, FitArgs, GroupsArgs, Link, Node, Positions, RefitArgs, Span, TreeletsArgs,
-};
-use nearmiss_kernels::bv::Axes;
+use nearmiss_kernels::abi::{FitArgs, GroupsArgs, Link, Node, Positions, RefitArgs, Span, TreeletsArgs};
 use nearmiss_kernels::bvh;
 use nearmiss_kernels::entry::{self, Entry, Kernels};
 use nearmiss_kernels::math::Vec3;
@@ -19,24 +16,18 @@ use nearmiss_kernels::math::Vec3;
 pub struct Volumes<V> {
     /// The nodes, in the tree's order.
     pub nodes: Buffer<Node<V>>,
-    axes: Axes,
     /// Growth of the volumes: half the separation, rounded up.
     pub margin: f32,
 }
 
 impl<V: Kernels> Volumes<V> {
-    /// Returns the choice of axes for merged boxes.
-    pub fn axes(&self) -> Axes {
-        self.axes
-    }
-
     /// Allocates the volumes of a tree. They hold everything within `margin` of the triangles.
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(device: &Device, tree: &Tree, (axes, margin): (Axes, f32)) -> Result<Self, Error> {
+    pub fn new(device: &Device, tree: &Tree, margin: f32) -> Result<Self, Error> {
         let leaves = tree.leaves() + tree.room().others() as usize;
-        Ok(Volumes { nodes: device.buffer(2 * leaves)?, axes, margin })
+        Ok(Volumes { nodes: device.buffer(2 * leaves)?, margin })
     }
 
     /// Fits the volumes of the leaves, unless treelets do that in [`Volumes::refit`]. Also fits the
@@ -63,7 +54,7 @@ impl<V: Kernels> Volumes<V> {
             };
             launch::each::<entry::fit<R, V>>(device, tree.leaves(), &args)?;
         }
-        if V::group(self.axes) == 0 {
+        if V::GROUP == 0 {
             return Ok(());
         }
         let args = GroupsArgs {
@@ -96,19 +87,6 @@ impl<V: Kernels> Volumes<V> {
         match &tree.way {
             RefitPlan::Levels => self.levels(device, tree),
             RefitPlan::Treelets(plan) => self.treelets(device, plan, frames, faces),
-            RefitPlan::BottomUp(arrivals) => {
-                let args = BottomUpArgs {
-                    links: tree.links.span(),
-                    pair_parents: tree.pair_parents.span(),
-                    leaf_nodes: tree.leaf_nodes.span(),
-                    firsts: tree.firsts.span(),
-                    arrivals: arrivals.span(),
-                    nodes: self.nodes.span(),
-                    axes: self.axes,
-                    root: tree.root(),
-                };
-                launch::each::<entry::refit_bottom_up<V>>(device, tree.leaves(), &args)
-            }
         }
     }
 
@@ -130,8 +108,8 @@ impl<V: Kernels> Volumes<V> {
             top_starts: plan.top_starts.span(),
             ticket: plan.ticket.span(),
             nodes: self.nodes.span(),
-            axes: self.axes,
             margin: self.margin,
+            pad: 0,
         };
         launch::blocks::<entry::refit_treelets<R, V>>(device, plan.blocks(), &args)
     }
@@ -162,8 +140,6 @@ impl<V: Kernels> Volumes<V> {
                 firsts: tree.firsts.span(),
                 from: from as u32,
                 to: to as u32,
-                axes: self.axes,
-                pad: 0,
             };
             launch::blocks::<entry::refit_levels<V>>(device, blocks, &args)?;
             to = from;
@@ -214,7 +190,7 @@ impl<V: Kernels> Volumes<V> {
     ) -> Result<(), Error> {
         let leaf = |triangle: u32| leaf_volume::<R, V>(faces[triangle as usize], frames).near(margin);
         let fitted = |first: u32, last: u32| {
-            if last - first >= V::group(self.axes) {
+            if last - first >= V::GROUP {
                 return None;
             }
             let triangles =
@@ -224,6 +200,6 @@ impl<V: Kernels> Volumes<V> {
             let volume = V::of_points(&*points.collect::<Vec<_>>());
             Some(volume.near(margin))
         };
-        bvh::check_volumes(links, nodes, (root, self.axes), leaf, fitted).map_err(broken)
+        bvh::check_volumes(links, nodes, root, leaf, fitted).map_err(broken)
     }
 }

@@ -1,12 +1,11 @@
 //! # Cuts: triangles along a curve → triangles in halves of halves
 //! Paper    not in the paper. Cuts at the median: J. L. Bentley, "Multidimensional binary search
 //!          trees", 1975.
-//! Launch   `halves_bounds`, `halves` and a sort for each level above a run, the widest first, if
-//!          all is to be cut. Then `runs`, a block a run.
-//! Reads    the order, positions at t = 0, faces, the tree's bodies and their extents.      Writes
-//!          the order; codes of a level.
-//! Before   triangles ascend by their codes; the output of `halves_bounds` and the counts = 0.
-//! After    A stretch is an aligned power of two of runs, or a part of a run down to two tiles.
+//! Launch   `runs`, a block a run.
+//! Reads    the order, positions at t = 0, faces, the tree's bodies and their extents.
+//! Writes   the order.
+//! Before   triangles ascend by their codes.
+//! After    A stretch is a run, or an aligned half of a stretch, down to two tiles.
 //!          The triangles of a stretch ascend by their centres along the longest axis of the box of
 //!          these centres.
 //!          So the two halves of a stretch are apart along that axis.
@@ -14,17 +13,16 @@
 //!          never make bodies share more tiles.
 //! Room     fixed; cannot run out.
 //! Silent   cuts affect how many tiles overlap. No answer depends on them.
-//! Cost     a level of all: 24 B gathered a triangle, twice, and a sort. `runs`: the same once,
-//!          then all on chip.
-//!          Each of its 4 levels takes some 20 phases and two passes of a radix sort of 512 items.
+//! Cost     24 B gathered a triangle, then all on chip.
+//!          Each of 4 levels takes some 20 phases and two passes of a radix sort of 512 items.
 
 use crate::abi::CutArgs;
-use crate::bvh::centres::{self, Grid, KEYS, Mesh, OF_A_BODY, OUTSIZED};
+use crate::bvh::centres::{self, Grid, Mesh, OF_A_BODY, OUTSIZED};
 use crate::bvh::filter::holder;
 use crate::bvh::tiles::{FAN, TILE};
 use crate::exec::{BINS, Block, Lane, Shared, Slot, WARP, striped};
 use crate::math::Real;
-use crate::sort::{self, EACH};
+use crate::sort::EACH;
 
 /// Triangles of a run: 16 tiles, those of a node above tiles.
 pub const RUN: u32 = FAN * TILE;
@@ -75,53 +73,6 @@ impl<R: Real> CutArgs<R> {
     fn is_cut<L: Lane>(&self, lane: &L, first: u32, end: u32) -> bool {
         self.class(lane, first) == self.class(lane, end - 1)
     }
-
-    /// Triangles of a stretch of all; 2^31 is more than there are.
-    #[inline(always)]
-    fn stretch(&self) -> u32 {
-        RUN << self.level
-    }
-}
-
-/// The boxes of the centres of each stretch.
-pub fn halves_bounds<R: Real, B: Block>(block: &mut B, args: &CutArgs<R>) {
-    let stretch = args.stretch();
-    centres::of_each(
-        block,
-        args.stretches,
-        KEYS,
-        args.count,
-        |_, i| i / stretch,
-        |lane, extent, i, _| {
-            extent.add(lane, args.mesh(), lane.read(args.items, i) as u32, false);
-            i / stretch
-        },
-    );
-}
-
-/// A code a triangle: its stretch, then its position along the longest axis of the stretch.
-pub fn halves<R: Real, B: Block>(block: &mut B, args: &CutArgs<R>) {
-    let stretch = args.stretch();
-    let bits = u32::BITS - ((args.count - 1) / stretch).leading_zeros();
-    let stride = block.blocks() * block.lanes();
-    block.phase(|lane| {
-        let mut i = lane.global();
-        while i < args.count {
-            let triangle = lane.read(args.items, i) as u32;
-            let own = i / stretch;
-            let first = own * stretch;
-            let mut code = (own as u64) << (u32::BITS - bits);
-            if args.is_cut(lane, first, first.saturating_add(stretch).min(args.count)) {
-                let keys = centres::keys(KEYS * own, |k| lane.read(args.stretches, k));
-                let axis = longest(centres::sides(keys).1);
-                let c = centres::centre(lane, args.mesh(), triangle);
-                code |= Grid::new(keys, u32::BITS - bits).cell(c, axis) as u64;
-            }
-            lane.write(args.items, i, code << 32 | triangle as u64);
-            sort::tally(lane, &args.tiles, i, code as u32 & (BINS - 1));
-            i = i.saturating_add(stride);
-        }
-    });
 }
 
 /// The axis of the longest side.

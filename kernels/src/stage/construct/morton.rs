@@ -45,18 +45,11 @@ pub fn bounds<R: Real, B: Block>(block: &mut B, args: &MortonArgs<R>) {
         (Mesh { frames: &args.frames, faces: args.faces }, args.flags.has(MortonFlags::APART));
     if args.bodies.len() > 1 {
         let which = |block: &B, i: u32| holder(args.bodies.len(), i, |k| block.load(args.bodies, k).before);
-        return centres::of_each(
-            block,
-            args.extents,
-            OF_A_BODY,
-            args.count,
-            which,
-            |lane, extent, i, is_new| {
-                let (body, triangle) = triangle(lane, args, i);
-                extent.add(lane, mesh, triangle, is_new && apart);
-                body
-            },
-        );
+        return centres::of_each(block, args.extents, args.count, which, |lane, extent, i, is_new| {
+            let (body, triangle) = triangle(lane, args, i);
+            extent.add(lane, mesh, triangle, is_new && apart);
+            body
+        });
     }
     let (best, lanes) = (centres::gathered(block), block.lanes());
     let stride = block.blocks() * lanes;

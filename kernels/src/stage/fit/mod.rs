@@ -5,7 +5,7 @@
 //! | --- | --- | --- | --- |
 //! | [`tiles`] | tiles: **the default** | triangles, tiles, nodes above tiles | each frame |
 //! | [`rims`] | tiles | edges opposite to hubs | if adjacent pairs are kept |
-//! | [`leaves`] | trees, the paper's | leaves | by the refits by level and bottom-up |
+//! | [`leaves`] | trees, the paper's | leaves | by the refit by level |
 //! | [`leaves`] `groups` | trees | nodes with few leaves | by oriented boxes |
 //!
 //! The refit by treelets fits its leaves itself: see [`crate::stage::refit`].

@@ -52,11 +52,7 @@ fn above<R: Real, V: Volume, L: Lane>(lane: &L, args: &RimsArgs<R, V>, node: u32
         if below.link == 0 || (i > first && below.link != rim.link) {
             return nothing;
         }
-        rim = if i == first {
-            below
-        } else {
-            Node { volume: rim.volume.merge(&below.volume, args.axes), ..rim }
-        };
+        rim = if i == first { below } else { Node { volume: rim.volume.merge(&below.volume), ..rim } };
         i += 1;
     }
     Node { last: 0, ..rim }

@@ -44,7 +44,7 @@ pub fn tiles<R: Real, V: Volume, B: Block>(block: &mut B, args: &FitTilesArgs<R,
         chip.put(lane, lane.lane(), volume);
         *volumes.of(lane) = volume;
     });
-    chip.merge(block, &mut volumes, TILE, 1, args.axes);
+    chip.merge(block, &mut volumes, TILE, 1);
     block.phase(|lane| {
         if lane.lane().is_multiple_of(TILE) {
             let place = index * FAN + lane.lane() / TILE;
@@ -54,7 +54,7 @@ pub fn tiles<R: Real, V: Volume, B: Block>(block: &mut B, args: &FitTilesArgs<R,
         }
         lane.meet();
     });
-    chip.merge(block, &mut volumes, FAN, TILE, args.axes);
+    chip.merge(block, &mut volumes, FAN, TILE);
     block.phase(|lane| {
         if lane.lane() == 0 {
             let tile = args.tile + index * FAN;

@@ -28,10 +28,10 @@ pub fn levels<V: Volume, B: Block>(block: &mut B, args: &RefitArgs<V>) {
             let mut at = start + lane.global();
             while at < end {
                 let link = lane.read(args.links, at);
-                if !link.is_leaf() && !is_fitted::<V, _>(lane, args.firsts, link, args.axes) {
+                if !link.is_leaf() && !is_fitted::<V, _>(lane, args.firsts, link) {
                     let (left, right) =
                         (lane.read(args.nodes, link.link), lane.read(args.nodes, link.link + 1));
-                    lane.write(args.nodes, at, link.with(left.volume.merge(&right.volume, args.axes)));
+                    lane.write(args.nodes, at, link.with(left.volume.merge(&right.volume)));
                 }
                 at += stride;
             }

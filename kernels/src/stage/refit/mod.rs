@@ -7,11 +7,9 @@
 //! | [`tiles`] | tiles: **the default** | one a level, from the third on | every machine |
 //! | [`treelets`] | trees | one, with barriers within blocks | default of trees on a GPU |
 //! | [`levels`] | trees, the paper's | one a level | default of trees on a CPU |
-//! | [`bottom_up`] | trees | one, without barriers | on request |
 //!
-//! All three of trees merge left with right, so they give the same bits.
+//! Both of trees merge left with right, so they give the same bits.
 
-pub mod bottom_up;
 pub mod levels;
 pub mod tiles;
 pub mod treelets;

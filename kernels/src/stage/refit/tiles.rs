@@ -35,7 +35,7 @@ pub fn tiles<V: Volume, B: Block>(block: &mut B, args: &RefitTilesArgs<V>) {
         chip.put(lane, lane.lane(), volume);
         *volumes.of(lane) = volume;
     });
-    chip.merge(block, &mut volumes, FAN, 1, args.axes);
+    chip.merge(block, &mut volumes, FAN, 1);
     block.phase(|lane| {
         let node = (index * LANES + lane.lane()) / FAN;
         if lane.lane().is_multiple_of(FAN) && node < args.count {

@@ -40,7 +40,7 @@ pub fn treelets<R: Real, V: Volume, B: Block>(block: &mut B, args: &TreeletsArgs
     let ranges = block.shared::<[u32; 2]>(SLOTS);
     let ends = block.shared::<u32>(MAX_LEVELS);
     let Treelet { first, leaves, merges, rounds } = block.load(args.treelets, block.block());
-    let (lanes, fitted) = (block.lanes(), V::group(args.axes));
+    let (lanes, fitted) = (block.lanes(), V::GROUP);
     block.phase(|lane| {
         let mut i = lane.lane();
         while i < leaves {
@@ -83,7 +83,7 @@ pub fn treelets<R: Real, V: Volume, B: Block>(block: &mut B, args: &TreeletsArgs
                         chip.get::<V, _>(lane, slot)
                     }
                 };
-                let volume = child(from, 0).merge(&child(split, 1), args.axes);
+                let volume = child(from, 0).merge(&child(split, 1));
                 chip.put(lane, from, volume);
                 lane.store_relaxed(args.nodes, node, merge.link().with(volume));
             }
@@ -135,7 +135,7 @@ fn top<R: Real, V: Volume, B: Block>(block: &mut B, args: &TreeletsArgs<R, V>, s
                 lane.store_relaxed(
                     args.nodes,
                     merge.node,
-                    merge.link().with(left.volume.merge(&right.volume, args.axes)),
+                    merge.link().with(left.volume.merge(&right.volume)),
                 );
                 i += lanes;
                 if i < end {

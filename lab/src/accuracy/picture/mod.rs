@@ -44,7 +44,7 @@ pub fn tolerance(device: &str, rows: &[Row]) -> Result<String, Error> {
 
 /// Returns whether a row has defaults for everything except solver and tolerance.
 fn is_plain(row: &Row) -> bool {
-    let default = nearmiss::query::Bv::default_for(nearmiss::query::QueryKind::Continuous).name();
+    let default = nearmiss::research::Bv::default_for(nearmiss::query::QueryKind::Continuous).name();
     row.bv.is_none_or(|bv| bv == default) && (row.bv.is_some() || row.precision == "f64")
 }
 
@@ -134,7 +134,9 @@ fn curves(rows: &[&Row], x: impl Fn(&Row) -> f64, y: impl Fn(&Row) -> f64) -> Ve
 mod tests {
     use super::*;
     use crate::tables::picture::check::faults;
-    use nearmiss::query::{QueryKind, Solver};
+    use nearmiss::query::QueryKind;
+    use nearmiss::research::KindExt;
+    use nearmiss::research::Solver;
 
     #[test]
     fn a_solver_has_one_colour_in_every_picture() {

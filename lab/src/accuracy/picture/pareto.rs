@@ -10,7 +10,7 @@ use super::style;
 use crate::accuracy::row::Row;
 use crate::tables::picture::{At, Drawn, FAINT, INK, Sheet, head_height, wide_sheet};
 use nearmiss::error::Error;
-use nearmiss::query::Solver;
+use nearmiss::research::Solver;
 use plotters::style::{RGBColor, WHITE};
 
 /// Height of a frame, and of the rest of a panel.

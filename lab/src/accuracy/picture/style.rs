@@ -2,7 +2,7 @@
 //! their marks differ too.
 
 use crate::tables::picture::{FAINT, INK, Mark};
-use nearmiss::query::Solver;
+use nearmiss::research::Solver;
 use plotters::style::RGBColor;
 
 /// A colour, a mark at each point, and whether the line is dashed and the mark hollow, for solvers

@@ -13,7 +13,8 @@ use crate::oracle::{Triangle, triangles_meet, triangles_meet_beyond};
 use nearmiss::contacts::{Contacts, Kind};
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Discrete, Query, TriangleTest};
+use nearmiss::query::{Discrete, Query};
+use nearmiss::research::{TriangleTest, WithSolver};
 use nearmiss::scene::CollisionFilter;
 
 /// A body's numbers. Stored in f32 if that holds all of them, unless `wide`.

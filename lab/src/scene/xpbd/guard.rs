@@ -15,7 +15,8 @@ use nearmiss::contacts::{Contact, Kind};
 use nearmiss::device::{Backend, Device};
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions, Topology};
-use nearmiss::query::{Continuous, ContinuousSolver, Discrete, Precision, Query, TriangleTest};
+use nearmiss::query::{Continuous, Discrete, Query};
+use nearmiss::research::{ContinuousSolver, Precision, TriangleTest, WithSolver};
 use nearmiss_kernels::math::Vec3;
 
 /// Rounds that push meeting features apart.

@@ -5,7 +5,7 @@ use super::scene::{decode, detect, typed};
 use crate::judges::distance::Truth;
 use nearmiss::Query;
 use nearmiss::contacts::Rows;
-use nearmiss::query::Search;
+use nearmiss::research::{QueryExt, Search};
 
 /// Judges a distance query after `lie` has changed its answer. The bodies are a scene's at the
 /// start of its step; one body alone has no answer.

@@ -6,6 +6,7 @@ use nearmiss::Query;
 use nearmiss::contacts::Rows;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh};
+use nearmiss::research::QueryExt;
 
 /// Judges a near query after `lie` has changed its answer. The bodies are a scene's at the start of
 /// its step. The first byte chooses the distance among powers of two.

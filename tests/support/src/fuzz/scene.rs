@@ -7,9 +7,8 @@ use crate::brute::{Row, row};
 use nearmiss::contacts::{Contact, Kind, Rows, Status};
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::{Body, Mesh, Positions, Topology};
-use nearmiss::query::{
-    Broad, Bv, FrontShape, Order, QueryKind, QueueShape, Refit, Search, StealShape, Traversal,
-};
+use nearmiss::query::QueryKind;
+use nearmiss::research::{Broad, Bv, FrontShape, QueryExt, QueueShape, Refit, Search, StealShape, Traversal};
 use nearmiss::scene::CollisionFilter;
 use nearmiss::{Contacts, Detector, Device, Error, Query};
 use nearmiss_lab::oracle::{Toi, first_contact, triangles_meet};
@@ -35,13 +34,12 @@ pub fn decode(bytes: &[u8]) -> Result<(Vec<Body>, Query), Error> {
     ];
     // After the last walk: tiles, which have one traversal.
     let traversal = walks.get(usize::from(shape >> 2 & 15) % (walks.len() + 1)).copied();
-    let refit = [Refit::Levels, Refit::Treelets, Refit::BottomUp][usize::from(shape >> 6) % 3];
+    let refit = [Refit::Levels, Refit::Treelets][usize::from(shape >> 6) % 2];
     let query = queries[usize::from(choice / 3) % queries.len()].with_search(Search {
         broad: Some(if traversal.is_some() { Broad::Tree } else { Broad::Tiles }),
-        bv: Some(Bv::ALL[usize::from(shape) % 4]),
+        bv: Some(Bv::ALL[usize::from(shape) % Bv::ALL.len()]),
         traversal,
         refit: traversal.map(|_| refit),
-        order: traversal.is_none().then(|| Order::ALL[usize::from(shape >> 6) % 3]),
         ..Search::default()
     });
     let count = 1 + b.below(8) % 2;
