@@ -36,7 +36,6 @@ REFUSED = [
     (lambda: configure(nm.Discrete(), solver="certified"), nm.InvalidArgumentError, '"moller"'),
     (lambda: configure(nm.Discrete(adjacent=True), solver="moller"), nm.InvalidArgumentError, "adjacent"),
     (lambda: configure(nm.Discrete(), broad_phase="octree"), nm.InvalidArgumentError, '"tree", "tiles"'),
-    (lambda: configure(nm.Discrete(), broad_phase="tree", order="runs"), nm.InvalidArgumentError, "order of tiles for trees"),
     (lambda: configure(nm.Distance(), broad_phase="tiles"), nm.InvalidArgumentError, "a distance query by tiles"),
     (lambda: configure(nm.Near(1), rebuild="often"), nm.InvalidArgumentError, '"auto", "manual"'),
     (lambda: nm.Device("gpu"), nm.InvalidArgumentError, '"cuda"'),

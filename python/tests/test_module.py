@@ -18,7 +18,7 @@ CHOICES = [
     "Discrete()",
     "Discrete(adjacent=True)",
     "configure(Discrete(adjacent=True), broad_phase='tree')",
-    "configure(Discrete(), solver='moller', order='runs')",
+    "configure(Discrete(), solver='moller', rebuild='manual')",
     "Continuous()",
     "Continuous(tolerance=1e-06, min_separation=0.25, max_iterations=7)",
     "configure(Continuous(tolerance=1e-06, assume_free=True), solver='certified-f64', bounding_volume='aabb', rebuild='manual')",

@@ -38,8 +38,7 @@ def configure(
     ]
     | None = None,
     broad_phase: Literal["tree", "tiles"] | None = None,
-    bounding_volume: Literal["aabb", "obb", "obb-child", "linear"] | None = None,
-    order: Literal["hilbert", "runs", "median"] | None = None,
+    bounding_volume: Literal["aabb", "obb", "linear"] | None = None,
     rebuild: Literal["auto", "manual"] | None = None,
 ) -> _Q:
     """Return the same query with other choices of the laboratory.
@@ -52,7 +51,6 @@ def configure(
       "cubic-f32", which can miss contacts and take neither a tolerance nor a minimum separation.
     - `broad_phase`: "tiles" or "tree".
     - `bounding_volume`: volume of a triangle, "aabb" or "linear"; "obb" of trees.
-    - `order`: order of triangles in tiles.
     - `rebuild`: "auto" rebuilds tiles and trees when their boxes have become loose; "manual" does
       so by Detector.rebuild alone.
 

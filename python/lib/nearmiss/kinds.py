@@ -8,9 +8,7 @@ class Kind(IntEnum):
 
     VERTEX_FACE = 0
     """Feature a is a vertex, feature b a face."""
-    FACE_VERTEX = 1
-    """Feature a is a face, feature b a vertex."""
-    EDGE_EDGE = 2
+    EDGE_EDGE = 1
     """Both features are edges."""
 
 
