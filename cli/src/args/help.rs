@@ -40,7 +40,9 @@ fn values_below(arg: Arg) -> Arg {
     let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
     let defaults = arg.get_default_values().iter().map(|value| value.len() + 1).sum::<usize>();
     let names = values.iter().map(|value| value.get_name().len() + 2).sum::<usize>();
+    // A flag has the values true and false, which are never shown.
     if values.is_empty()
+        || !arg.get_action().takes_values()
         || arg.is_hide_possible_values_set()
         || BEFORE + help.len() + defaults + AROUND + names <= 100
     {

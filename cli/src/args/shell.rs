@@ -11,7 +11,9 @@ pub struct CompletionsArgs {
 
 #[derive(Args)]
 pub struct ManArgs {
-    /// Choose a command, such as detect or lab bench [default: program]
+    /// Choose a command, such as detect [default: the program]
+    ///
+    /// The laboratory has pages too: `nearmiss man lab bench`.
     #[arg(value_name = "COMMAND", num_args = 0..=2)]
     pub of: Vec<String>,
 }

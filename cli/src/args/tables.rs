@@ -81,7 +81,9 @@ pub struct TablesArgs {
     /// Choose the tables [default: 6.12, 6.13, 6.14]
     #[arg(long, num_args = 1.., value_enum, value_name = "TABLE")]
     pub table: Vec<Table>,
-    /// Choose the bounding volumes; the paper has aabb and obb
+    /// Choose the bounding volumes
+    ///
+    /// The paper has aabb and obb.
     #[arg(long, num_args = 1.., value_name = "NAME", value_parser = choice::<Bv>(),
         default_values_t = [Bv::Aabb, Bv::Obb])]
     pub bounding_volume: Vec<Bv>,

@@ -11,7 +11,7 @@ const PAGE: usize = 100;
 const SHORT: usize = 40;
 
 /// Words of the paper and of experiments: not in the short help of a product command.
-const OF_RESEARCH: [&str; 20] = [
+const OF_RESEARCH: [&str; 19] = [
     "paper",
     "thesis",
     "figure",
@@ -30,7 +30,6 @@ const OF_RESEARCH: [&str; 20] = [
     "steal",
     "broad",
     "volume",
-    "solver",
     "gtx",
 ];
 /// Words that no page has.
