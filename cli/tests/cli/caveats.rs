@@ -22,7 +22,7 @@ fn the_program_tells() {
     let all = json(&["--max-iterations", "1"]);
     let shrinking = asked(&[&t0, &t1], &["--max-iterations", "1", "--tolerance", "4e-3", "--json"]);
     let shrinking: serde_json::Value = serde_json::from_str(&shrinking).expect("JSON");
-    let boxes = shrinking["caveats"].as_array().expect("a list").iter().find(|r| r["reason"] == "boxes");
+    let boxes = shrinking["caveats"].as_array().expect("a list").iter().find(|r| r["reason"] == "iterations");
     assert!(boxes.is_some_and(|r| r["pairs"].as_u64().is_some_and(|n| n > 0)), "{shrinking}");
     assert_eq!(all["separation"], 0.0);
     let plain = json(&["--discrete"]);
