@@ -146,7 +146,7 @@ fn bad_files() -> Vec<Row> {
         ("byte.ply", ply("3 0 1 2", "300 0 1 2"), &["face 0", "\"300\"", "no uint8"]),
         ("short_line.ply", ply("1 0 0", "1 0"), &["vertex 1 ends its line before property z"]),
         ("long_line.ply", ply("1 0 0", "1 0 0 7"), &["vertex 1 has \"7\" after its last property"]),
-        ("nan.ply", ply("1 0 0", "1 nan 0"), &["vertex 1 has y = NaN", "must be finite", "mend"]),
+        ("nan.ply", ply("1 0 0", "1 nan 0"), &["vertex 1 has y = NaN", "must be finite", "correct it"]),
         ("inf.ply", ply("0 1 0", "0 1 -inf"), &["vertex 2 has z = -inf", "must be finite"]),
         (
             "infinite.ply",

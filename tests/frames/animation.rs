@@ -167,7 +167,7 @@ fn what_no_animation_can_do_is_refused() {
     assert!(
         text("grid", 10, false).is_some_and(|text| text.contains("cloth-ball, flamenco, n-body, princess"))
     );
-    assert!(text("n-body", 10, true).is_some_and(|text| text.contains("has none")));
+    assert!(text("n-body", 10, true).is_some_and(|text| text.contains("has no cloth")));
     for name in ANIMATIONS {
         assert!(text(name, 0, false).is_some_and(|text| text.contains("no triangles")));
         assert!(text(name, usize::MAX, false).is_some_and(|text| text.contains("at most 134217728")));

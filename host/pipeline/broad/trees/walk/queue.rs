@@ -88,7 +88,7 @@ impl GrowableOutput for Plan {
     /// that launch may have a schedule that needs fewer rounds.
     fn grow(&mut self, _: &Device, counters: &Counts) -> Result<bool, Error> {
         let short = self.has_overflowed(counters);
-        if let (true, Some(rounds)) = (short, self.of_last().take()) {
+        if short && let Some(rounds) = self.of_last().take() {
             self.least[usize::from(self.seeded)] = (2 * rounds).min(MOST_ROUNDS);
         }
         Ok(short)
