@@ -102,7 +102,7 @@ pub fn ask_turned_scenes(device: &Device, scenes: &[Scene]) -> Result<Report, Er
                 bodies.reverse();
             }
             let bodies = bodies.iter().map(Numbers::body).collect::<Result<_, _>>()?;
-            let bv = Bv::ALL[(turn + turn / 6) % 4];
+            let bv = Bv::ALL[(turn + turn / 6) % Bv::ALL.len()];
             let all = found(device, bodies, scene.query().with_bv(bv))?;
             let back = |[a, b]: [u32; 2]| {
                 let [a, b] = if exchanged { [b, a] } else { [a, b] };
