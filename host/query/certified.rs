@@ -56,8 +56,8 @@ impl CertifiedPrecision {
 
 impl Certified {
     /// Default tolerance, in mean edges. The product is rounded down to a power of two, so that it
-    /// does not depend on the order of summation. A smaller tolerance costs more; a
-    /// larger one takes more near misses for contacts.
+    /// does not depend on the order of summation. A smaller tolerance costs more; a larger one
+    /// takes more near misses for contacts.
     pub const TOLERANCE: f64 = 1e-4;
     /// Default of `max_iterations`: ten times the demand of the hardest pairs of public scenes.
     pub const MAX_ITERATIONS: u32 = Params::MAX_ITERATIONS;

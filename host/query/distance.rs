@@ -17,9 +17,9 @@ use crate::error::Error;
 ///     Mesh::new("a triangle", Positions::F32(corners), vec![[0, 1, 2]]).map(Body::deformable)
 /// };
 /// let bodies = vec![triangle(0.0)?, triangle(0.25)?];
-/// let nearest = Detector::new(Device::open(Backend::Cpu, None)?,
-/// bodies)?.query(&Distance::default())?; assert_eq!(nearest.map(|nearest| nearest.distance),
-/// Some(0.25));
+/// let mut detector = Detector::new(Device::open(Backend::Cpu, None)?, bodies)?;
+/// let nearest = detector.query(&Distance::default())?;
+/// assert_eq!(nearest.map(|nearest| nearest.distance), Some(0.25));
 /// # Ok::<(), nearmiss::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
