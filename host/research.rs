@@ -1,16 +1,16 @@
-//! The laboratory: everything that only experiments need, behind one import.
+//! Choices for experiments: solvers, searches and figures, behind one import.
 //!
-//! The queries of the library miss no contact, and choose how candidates are found by themselves.
-//! Here are the other choices:
+//! Queries of the library miss no contact, and find candidates in the fastest way of the machine.
+//! This module has the other choices:
 //!
 //! - solvers that can miss contacts, and precisions of the certified ones ([`WithSolver`]);
 //! - the search for candidates: broad phases, bounding volumes, refits, and the walks, queues and
 //!   fronts of Lauterbach et al. 2010 ([`QueryExt`], [`Search`]). They change time and memory,
 //!   never an answer;
-//! - single stages repeated, fingerprints of the device's memory, and figures of a frame
+//! - repetition of single stages, fingerprints of the device's memory, and figures of a frame
 //!   ([`DetectorExt`], [`StatsExt`]).
 //!
-//! Nothing of it is reached without this module:
+//! None of them can be reached without this module:
 //!
 //! ```
 //! use nearmiss::{Continuous, Query};
@@ -19,7 +19,7 @@
 //! let query = Continuous::by(ContinuousSolver::Cubic(Precision::F64)).with_bv(Bv::Obb);
 //! assert!(!Query::from(query).solver().is_certain());
 //! ```
-//! A search takes the trait:
+//! A search needs the trait:
 //! ```compile_fail,E0599
 //! # use nearmiss::research::Bv;
 //! let query = nearmiss::Query::continuous().with_bv(Bv::Obb);
@@ -40,7 +40,7 @@ pub use crate::query::queues::{Balance, FrontShape, QueueShape, StealShape};
 pub use crate::query::search::{Broad, Refit, Search, Traversal};
 pub use crate::query::solver::Solver;
 
-/// Parts of a frame, for judges that run one alone.
+/// Parts of a frame, for tests that run one alone.
 #[doc(hidden)]
 pub mod pipeline {
     pub use crate::pipeline::{
@@ -54,86 +54,86 @@ use crate::query::kind::Question;
 use crate::query::{Continuous, Discrete, Distance, Earliest, Near, Query, QueryKind, TypedQuery};
 use crate::{Detector, Error, Stage};
 
-/// How a query finds candidates, and by which solver it tests them.
+/// Search for candidates of a query, and its solver.
 pub trait QueryExt: TypedQuery {
-    /// How candidates are found, to change it.
+    /// Returns how candidates are found, to change it.
     fn search_mut(&mut self) -> &mut Search;
 
-    /// The choices of its certified solver, if it has one, to change them.
+    /// Returns the choices of its certified solver, to change them.
     fn certified_mut(&mut self) -> Option<&mut Certified>;
 
-    /// The query with every solver that answers it, all other choices at their defaults; the
-    /// default first. [`Query`] has all five.
+    /// Returns a query for each of its solvers, the default first. All other choices are at their
+    /// defaults. [`Query`] has those of all five kinds.
     fn every() -> std::vec::IntoIter<Self>;
 
-    /// The choices of its certified solver, if it has one.
+    /// Returns the choices of its certified solver, if it has one.
     fn certified(&self) -> Option<Certified> {
         let mut query = *self;
         query.certified_mut().copied()
     }
 
-    /// How candidates are found.
+    /// Returns how candidates are found.
     fn search(&self) -> Search {
         let mut query = *self;
         *query.search_mut()
     }
 
-    /// The same, with candidates found in that way.
+    /// Sets how candidates are found.
     #[must_use]
     fn with_search(mut self, search: Search) -> Self {
         *self.search_mut() = search;
         self
     }
 
-    /// The same, with that broad phase.
+    /// Sets the broad phase.
     #[must_use]
     fn with_broad(self, broad: Broad) -> Self {
         self.with_search(Search { broad: Some(broad), ..self.search() })
     }
 
-    /// The same, with that volume.
+    /// Sets the bounding volume.
     #[must_use]
     fn with_bv(self, bv: Bv) -> Self {
         self.with_search(Search { bv: Some(bv), ..self.search() })
     }
 
-    /// The same, with that refit.
+    /// Sets the refit of trees.
     #[must_use]
     fn with_refit(self, refit: Refit) -> Self {
         self.with_search(Search { refit: Some(refit), ..self.search() })
     }
 
-    /// The same, with that walk.
+    /// Sets the walk of trees.
     #[must_use]
     fn with_traversal(self, traversal: Traversal) -> Self {
         self.with_search(Search { traversal: Some(traversal), ..self.search() })
     }
 
-    /// The name of the test of a pair.
+    /// Returns the name of the test of a pair.
     fn solver(&self) -> Solver {
         let query: Query = (*self).into();
         query.solver()
     }
 
-    /// The volume that will be used.
+    /// Returns the bounding volume that will be used.
     fn bv(&self) -> Bv {
         let query: Query = (*self).into();
         query.bv()
     }
 
-    /// The broad phase that will be used on a GPU, or on a CPU.
+    /// Returns the broad phase that will be used on a GPU, or on a CPU.
     fn broad_on(&self, is_gpu: bool) -> Broad {
         let query: Query = (*self).into();
         query.broad_on(is_gpu)
     }
 
-    /// The refit of trees that will be used on a GPU, or on a CPU.
+    /// Returns the refit of trees that will be used on a GPU, or on a CPU.
     fn refit_on(&self, is_gpu: bool) -> Refit {
         let query: Query = (*self).into();
         query.refit_on(is_gpu)
     }
 
-    /// The walk of trees that will be used on a GPU, or on a CPU.
+    /// Returns the walk of trees that will be used on a GPU, or on a CPU.
     fn traversal_on(&self, is_gpu: bool) -> Traversal {
         let query: Query = (*self).into();
         query.traversal_on(is_gpu)
@@ -170,19 +170,19 @@ impl QueryExt for Query {
     }
 }
 
-/// Queries by a solver of choice, also by one that can miss contacts.
+/// Choice of a query's solver, also of one that can miss contacts.
 pub trait WithSolver: Sized {
-    /// The solvers that answer it.
+    /// Solvers of the query.
     type Solver;
 
-    /// By that solver, all other choices at their defaults.
+    /// Returns a query by a solver, with all other choices at their defaults.
     fn by(solver: impl Into<Self::Solver>) -> Self;
 
-    /// The same, by that solver.
+    /// Sets the solver.
     #[must_use]
     fn with_solver(self, solver: impl Into<Self::Solver>) -> Self;
 
-    /// Its solver.
+    /// Returns its solver.
     fn chosen(&self) -> Self::Solver;
 }
 
@@ -210,13 +210,12 @@ solvers! {
     Earliest by ContinuousSolver in solver;
 }
 
-/// What a kind of query may be answered by.
+/// Solvers and walks of a kind of query.
 pub trait KindExt {
-    /// The solvers that answer it, the default first.
+    /// Returns its solvers, the default first.
     fn solvers(self) -> Vec<Solver>;
 
-    /// Whether it may be searched by more than one walk: else [`Traversal::NearestFirst`] is the
-    /// only one.
+    /// Returns whether it has a choice of walks. If not, its walk is [`Traversal::NearestFirst`].
     fn takes_traversals(self) -> bool;
 }
 
@@ -229,46 +228,50 @@ impl KindExt for QueryKind {
     }
 }
 
-/// Stages alone, the content of the device's memory, and all figures of an answer.
+/// Single stages, fingerprints of the device's memory, and all figures of an answer.
 pub trait DetectorExt {
-    /// Runs one stage of a query's frame `times` times, on the device alone, and returns the
-    /// milliseconds of each run: for profilers, and for figures of one stage. What the stage needs
-    /// runs before, once, if it has not yet: the leaves' volumes for [`Stage::Refit`], a whole
-    /// frame for [`Stage::Traverse`], [`Stage::Narrow`] and [`Stage::Order`]. No answer changes by
-    /// it. If nothing can meet there are no stages, and a CPU orders nothing: no runs.
+    /// Runs one stage of a query's frame `times` times on the device, and returns the milliseconds
+    /// of each run. It is for profilers, and for figures of one stage.
+    ///
+    /// Its inputs are made once before the runs, if they are missing. [`Stage::Refit`] needs the
+    /// leaves' volumes; [`Stage::Traverse`], [`Stage::Narrow`] and [`Stage::Order`] need a whole
+    /// frame. No answer changes. There are no runs if nothing can meet, nor of [`Stage::Order`] on
+    /// a CPU.
     ///
     /// # Errors
     /// Those of the device.
     fn repeat_stage(&mut self, query: &Query, stage: Stage, times: u32) -> Result<Vec<f64>, Error>;
 
-    /// Runs the narrow stage of a query's frame once more, step by step: each step's name and
-    /// milliseconds on the device's own clock. If nothing can meet there are no steps.
+    /// Runs the narrow stage of a query's frame again, step by step. It returns the name of each
+    /// step and its milliseconds on the device's clock. If nothing can meet there are no steps.
     ///
     /// # Errors
     /// Those of the device.
     fn narrow_steps(&mut self, query: &Query) -> Result<Vec<(&'static str, f64)>, Error>;
 
-    /// Content of the device's memory after the last frame, which was of this query, as hashes by
-    /// stage: trees to the bit, lists as sets. Two machines that agree on these agree on every
-    /// kernel.
+    /// Returns hashes of the device's memory by stage, after the last frame. That frame must have
+    /// been of this query. Trees are hashed to the bit, lists as sets. Two machines with equal
+    /// hashes agree on every kernel.
     ///
     /// # Errors
     /// Those of the device.
     fn fingerprints(&mut self, query: &Query) -> Result<Vec<(&'static str, u64)>, Error>;
 
-    /// Checks every tree of a query in the device's memory; volumes too, which a frame sets.
+    /// Checks every tree of a query in the device's memory, and the volumes that a frame sets.
     ///
     /// # Errors
     /// [`Error::Bug`] with the first violation; those of the device.
     fn check_volumes(&mut self, query: &Query) -> Result<(), Error>;
 
-    /// Levels of the tree of a query over moving bodies, and of that over static ones, if there are
-    /// any.
+    /// Returns the number of levels of a query's tree over moving bodies, and of that over static
+    /// ones. A tree without bodies is left out.
     fn depths(&mut self, query: &Query) -> Vec<usize>;
 
-    /// The figures of an answer and the notes beside it, as the command line prints them. Cost: a
-    /// hash of the answer, and the notes: a comparison of both ends of the step if nothing moves, a
-    /// sort of all vertices if there are [`Note::MANY`](crate::contacts::Note::MANY) contacts.
+    /// Returns the figures of an answer and its notes, as the command line prints them.
+    ///
+    /// It costs a hash of the answer, and the notes. If nothing moves, they compare both ends of
+    /// the step. If there are [`Note::MANY`](crate::contacts::Note::MANY) contacts, they sort all
+    /// vertices.
     fn summary(&mut self, contacts: &Contacts) -> Summary;
 }
 
@@ -293,12 +296,12 @@ impl DetectorExt for Detector {
     }
 }
 
-/// What the walks of trees did.
+/// Figures of the walks of trees.
 pub trait StatsExt {
-    /// Work queues.
+    /// Returns figures of the work queues.
     fn queues(&self) -> Queues;
 
-    /// The front of a walk.
+    /// Returns figures of the front.
     fn front(&self) -> Front;
 }
 

@@ -1,4 +1,4 @@
-//! Frames that are submitted and not waited for.
+//! Submitted frames, for which the host does not wait.
 
 use super::Detector;
 use super::frame::Answered;
@@ -12,15 +12,19 @@ use crate::query::{Query, TypedQuery};
 use crate::scene::{BodyId, DeviceMotion, Motion};
 use std::time::Instant;
 
-/// Rounds of a preparation: a frame of each query, and a submission that may find lists too short. Each
-/// such submission doubles a queue's list, which 32 bits number, or a plan of at most 128 launches; or it
-/// lengthens a list whose entries the candidates bound, which doubles such a list in 6.
+/// Most rounds of a preparation. A round has a frame of each query, and a submission that may find
+/// lists too short. Each short submission lengthens something:
+///
+/// - it doubles the list of a queue, which 32 bits number;
+/// - or it doubles a plan of at most 128 launches;
+/// - or it lengthens a list whose entries the candidates bound; such a list doubles within 6
+///   rounds.
 const PREPARING_ROUNDS: u32 = 64;
 
-/// Runs rounds until one had room for all.
+/// Runs rounds until one had enough room.
 ///
 /// # Errors
-/// [`Error::InvalidArgument`] if none had; that of a round.
+/// [`Error::InvalidArgument`] if none had; the error of a round.
 fn until_whole(mut round: impl FnMut() -> Result<bool, Error>) -> Result<(), Error> {
     for _ in 0..PREPARING_ROUNDS {
         if round()? {
@@ -28,28 +32,31 @@ fn until_whole(mut round: impl FnMut() -> Result<bool, Error>) -> Result<(), Err
         }
     }
     Err(Error::InvalidArgument {
-        what: format!("a submission whose lists were still too short after {PREPARING_ROUNDS} rounds of `prepare`"),
-        advice: "leave the memory of positions unchanged during `prepare`, choose another traversal, or query frame by frame"
+        what: format!("lists of a submission are too short after {PREPARING_ROUNDS} rounds of `prepare`"),
+        advice: "do not change positions during `prepare`, use another traversal, or query frame by frame"
             .into(),
     })
 }
 
-/// Refuses no query, and two of one shape.
+/// Checks that there is a query, and that no two have one shape.
 ///
 /// # Errors
 /// [`Error::InvalidArgument`].
 fn check_shapes(queries: &[Query]) -> Result<(), Error> {
     if queries.is_empty() {
         return Err(Error::InvalidArgument {
-            what: "a submission without a query".into(),
-            advice: "name the queries that will be submitted".into(),
+            what: "a submission must have at least one query, got none".into(),
+            advice: "pass the queries that will be submitted".into(),
         });
     }
     for (at, query) in queries.iter().enumerate() {
         if queries[..at].iter().any(|other| other.shape() == query.shape()) {
             return Err(Error::InvalidArgument {
-                what: format!("two {} queries that differ in numbers alone, in one submission", query.kind()),
-                advice: "prepare the one that includes the other, or use two detectors".into(),
+                what: format!(
+                    "queries of a submission must differ in more than numbers, got two {} queries",
+                    query.kind()
+                ),
+                advice: "prepare only the one that includes the other, or use two detectors".into(),
             });
         }
     }
@@ -57,16 +64,22 @@ fn check_shapes(queries: &[Query]) -> Result<(), Error> {
 }
 
 impl Detector {
-    /// Prepares submissions that the host does not wait for. It runs the queries with the bodies where their memory says now, loads
-    /// every kernel and takes all memory, until a submission has room for all. So after `Ok` the detector
-    /// [is prepared](Detector::is_prepared), and [`Detector::collect`] has the answer. [`Detector::submit`] then takes no memory and
-    /// waits for nothing. Bodies that are not named rest. Any other call that changes the detector ends it.
+    /// Prepares submissions, for which the host does not wait.
+    ///
+    /// It runs the queries with positions from the memory of `motions`, loads every kernel and
+    /// allocates all memory. It repeats this until a submission has enough room. After `Ok` the
+    /// detector [is prepared](Detector::is_prepared), and [`Detector::collect`] returns the answer.
+    /// [`Detector::submit`] then allocates nothing and does not wait. Bodies without a motion rest.
+    /// Any other call that changes the detector ends the preparation.
     ///
     /// The memory of the caller must not change during the call.
     ///
     /// # Errors
-    /// As for [`Detector::step`]; [`Error::InvalidArgument`] for no query, for two that differ in numbers alone, for a traversal that needs
-    /// the host, and if the lists have not settled after so many rounds as any schedule needs.
+    /// As for [`Detector::step`]. [`Error::InvalidArgument`]:
+    ///
+    /// - if there is no query, or two differ in numbers alone;
+    /// - if a traversal needs the host;
+    /// - if the lists are still too short after more rounds than any schedule needs.
     pub fn prepare(&mut self, motions: &[(BodyId, DeviceMotion)], queries: &[Query]) -> Result<(), Error> {
         let prepared = self.prepared(motions, queries);
         self.ended(prepared)
@@ -78,11 +91,12 @@ impl Detector {
         let given: Vec<(BodyId, Motion)> =
             motions.iter().map(|&(id, motion)| (id, Motion::OnDevice(motion))).collect();
         let in_motion = queries.iter().find(|query| !query.kind().is_at_rest());
-        // Positions with room for the end of the step from the first query on, if any will read it.
+        // If any query will read the end of the step, positions have room for it from the first on.
         self.engine.has_ends |= in_motion.is_some() && self.engine.pipeline.is_none();
         self.apply(&given, in_motion)?;
         let questions = queries.iter().map(|&query| self.question(query)).collect::<Result<Vec<_>, _>>()?;
-        // Once before the rounds: then lists that queries share are as long as the longest needs, and a front is there to be kept.
+        // Once before the rounds. Then lists that queries share have the longest length, and there
+        // is a front that a submission can continue from.
         self.answer_whole(&questions)?;
         until_whole(|| {
             self.answer_whole(&questions)?;
@@ -93,23 +107,27 @@ impl Detector {
     }
 
     /// Answers each query in one slice.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] if one needs more slices; those of a frame.
     fn answer_whole(&mut self, questions: &[Question]) -> Result<(), Error> {
         for question in questions {
             self.answer(question, Instant::now())?;
             let slices = self.portion.slices(&question.query);
             if slices > 1 {
                 return Err(Error::InvalidArgument {
-                    what: format!("a submission in {slices} slices"),
-                    advice: "the lists of a whole frame have no room: give the device more memory, or query frame by frame".into(),
+                    what: format!("a submission must fit device memory in one slice, got {slices} slices"),
+                    advice: "use a device with more memory, or query frame by frame".into(),
                 });
             }
         }
         Ok(())
     }
 
-    /// Places bodies from memory of the caller, and submits the queries once; whether that had room for all.
+    /// Places bodies from the caller's memory, and submits the queries once. Returns whether there
+    /// was enough room.
     fn try_submission(&mut self, given: &[(BodyId, Motion)], queries: &[Query]) -> Result<bool, Error> {
-        // From there, and from nowhere else: a query may have brought positions to the host.
+        // Only from the caller's memory: a query may have downloaded positions to the host.
         self.apply(given, None)?;
         let Some(pipeline) = &mut self.engine.pipeline else { return Ok(true) };
         if given.is_empty() {
@@ -119,22 +137,24 @@ impl Detector {
         pipeline.prepare(&places)
     }
 
-    /// Whether [`Detector::submit`] may be called, and a recording of it launched again: [`Detector::prepare`] was called, and
-    /// nothing since then that changes the detector.
+    /// Returns whether [`Detector::submit`] may be called, and a recording of it launched again. It
+    /// is true after [`Detector::prepare`], until a call changes the detector.
     pub fn is_prepared(&self) -> bool {
         let pipeline = self.engine.pipeline.as_ref();
         pipeline.map_or_else(|| !self.may_meet(), |pipeline| pipeline.is_prepared())
     }
 
-    /// Submits the prepared queries to the device's stream, with bodies where their memory says when its turn comes: launches alone. So
-    /// it may be called while that stream is captured, and the graph launched as often as wanted, as long as the detector
-    /// [is prepared](Detector::is_prepared). [`Detector::on_device`] gives the addresses of the answers, [`Detector::collect`] waits
-    /// for one.
+    /// Submits the prepared queries to the device's stream. It only launches kernels, which read
+    /// positions from the caller's memory in the order of the stream.
     ///
-    /// Times of its stages are not taken. On a CPU it is done when this returns.
+    /// So it may be called while that stream is captured. The graph can be launched any number of
+    /// times while the detector [is prepared](Detector::is_prepared). [`Detector::on_device`]
+    /// returns the addresses of the answers; [`Detector::collect`] waits for one.
+    ///
+    /// Stages are not timed. On a CPU the frame is complete when this returns.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] if it is not prepared; those of the device.
+    /// [`Error::InvalidArgument`] if the detector is not prepared; those of the device.
     pub fn submit(&mut self) -> Result<(), Error> {
         start_threads()?;
         self.engine.answered = None;
@@ -148,19 +168,23 @@ impl Detector {
         self.ended(submitted)
     }
 
-    /// Addresses of the answer to a submitted query, for kernels of the caller behind it; `None` if it is not prepared, or nothing can
-    /// meet.
+    /// Returns the addresses of the answer to a submitted query, for the caller's kernels that
+    /// follow on the stream. `None` if the query is not prepared, or if nothing can meet.
     pub fn on_device(&self, query: &Query) -> Option<DeviceAnswer> {
         let pipeline = self.engine.pipeline.as_ref().filter(|_| self.placed.answers(query))?;
         pipeline.place_of(query).and_then(|at| pipeline.answer(at))
     }
 
-    /// Waits for the last submission, or the last launch of its recording, and brings the answer to one of its queries. If a list had too
-    /// little room it grows and the query runs again, with bodies where they were placed: the answer is whole, and the detector is no
-    /// longer [prepared](Detector::is_prepared). So does a query that was not prepared with these numbers.
+    /// Waits for the last submission, or for the last launch of its recording. Returns the answer to
+    /// one of its queries.
+    ///
+    /// If a list was too short, it grows, and the query runs again with the same positions. Then
+    /// the answer is complete, and the detector is no longer [prepared](Detector::is_prepared). A
+    /// query that was not prepared with these numbers runs in the same way.
     ///
     /// # Errors
-    /// [`Error::Input`] and [`Error::InvalidArgument`] for positions and poses of the caller that cannot be computed with; those of the device.
+    /// [`Error::Input`] and [`Error::InvalidArgument`] for invalid positions and poses of the
+    /// caller; those of the device.
     pub fn collect<Q: TypedQuery>(&mut self, query: &Q) -> Result<Answer<Q::Rows>, Error> {
         let collected = self.collected((*query).into());
         self.ended(collected).map(Contacts::typed::<Q>)

@@ -61,9 +61,9 @@ impl BelowPrecision {
     /// Returns the caveat of an earliest query, which lists no pairs. The host must know all
     /// positions. The caveat holds if bodies that may meet, or one that tests itself, have an
     /// edge too long for the tolerance of their pairs. Bodies farther apart than the tested
-    /// distance do not count. `own` is whether each pair has its own tolerance. Cost: a pass over
-    /// the positions; one over the faces of bodies whose extent is too large; and one over all
-    /// bodies for each body with a long edge.
+    /// distance do not count. `own` is whether each pair has its own tolerance. It costs a pass
+    /// over the positions, and one over the faces of bodies whose extent is too large. Each body
+    /// with a long edge costs a pass over all bodies.
     pub fn of_earliest(bodies: &[Body], certified: &Certified, own: bool) -> Option<BelowPrecision> {
         let tolerance =
             |a: &Body, b: &Body| if own { of_pair(a, b) } else { certified.tolerance.unwrap_or(0.0) };

@@ -12,8 +12,9 @@ use nearmiss_kernels::abi::{BodyRecord, Counter, EVERY, counter};
 
 /// Least size in bytes of an answer that is compared with free memory.
 const LITTLE: u64 = 16 << 20;
-/// Rows of an answer of features per candidate pair of triangles, if all of its features meet: 1 /
-/// 2 + 9 / 4 in a closed mesh, more in a soup. It only decides when rows are counted on the host.
+/// Rows of an answer of features per candidate pair of triangles, if all of its features meet. A
+/// closed mesh has 1 / 2 + 9 / 4, a soup has more. It only decides when rows are counted on the
+/// host.
 const ROWS_A_PAIR: u64 = 4;
 /// Triangles of the smallest group.
 const GROUP: usize = 16;

@@ -100,8 +100,8 @@ impl<R: Precision, V: Kernels> Enclosed<R, V> {
         self.volumes.refit(&self.device, &self.tree, frames, faces)
     }
 
-    /// Counts the violations after `fault`. A violation is a node with a corner of a triangle below
-    /// it: the node does not hold everything within `near` of that corner at all times. Cost: each
+    /// Counts the violations after `fault`. A violation is a node and a corner of a triangle below
+    /// it. The node does not hold everything within `near` of the corner at all times. Cost: each
     /// corner against each node above it, in exact arithmetic on the host.
     ///
     /// # Errors

@@ -11,7 +11,7 @@ use nearmiss_kernels::entry::Entry;
 /// Device errors.
 pub fn blocks<E: Entry>(device: &Device, blocks: u32, args: &E::Args) -> Result<(), Error> {
     // SAFETY: the stages make their arguments of buffers of this device that the pipeline holds, as
-    // the kernel's header requires under "Before"; a buffer that is dropped waits for the launches
+    // the kernel's header requires under "Before". A buffer that is dropped waits for the launches
     // before.
     unsafe { device.launch::<E>(blocks, args) }
 }

@@ -1,9 +1,9 @@
 //! Decides when the order of triangles is stale. It counts tests, so that every machine decides
 //! alike.
 
-/// Cost of a rebuild per triangle, in tests of two volumes. Measured with tiles on cloth-ball, as
-/// the time of a construction over that of a test in a frame: 80 on an H200, 30 to 60 on a CPU. It
-/// affects no answer.
+/// Cost of a rebuild per triangle, in tests of two volumes. It was measured with tiles on
+/// cloth-ball: the time of a construction, divided by that of a test in a frame. That is 80 on an
+/// H200, and 30 to 60 on a CPU. It affects no answer.
 const OF_A_TRIANGLE: u64 = 64;
 
 /// Excess tests since the last rebuild, and whether a body got its first position since.

@@ -1,15 +1,15 @@
-//! The choice of a bounding volume: made of the list of volumes, [`nearmiss_kernels::volumes`].
+//! The choice of a bounding volume, made from the list [`nearmiss_kernels::volumes`].
 
 use super::{QueryKind, named};
 use nearmiss_kernels::bv;
 use nearmiss_kernels::entry::Kernels;
 
-/// What is done with a volume that was chosen by name.
+/// An action on the type of a volume that was chosen by name.
 #[doc(hidden)]
 pub trait WithVolume {
-    /// What comes of it.
+    /// Result of the action.
     type Out;
-    /// Does it, with that type.
+    /// Runs the action with the type `V`.
     fn with<V: Kernels>(self) -> Self::Out;
 }
 
@@ -23,7 +23,7 @@ macro_rules! choices {
         }
 
         impl Bv {
-            /// Does something with the type that it names.
+            /// Runs an action with the type of the volume.
             #[doc(hidden)]
             pub fn with<W: WithVolume>(self, what: W) -> W::Out {
                 match self {
@@ -37,8 +37,8 @@ macro_rules! choices {
 nearmiss_kernels::volumes!(choices);
 
 impl Bv {
-    /// The fastest volume that the real scenes have (measured, `docs/performance.md`): what stands still needs no more
-    /// than a box; of what moves, boxes that move with it let a third to a tenth of the pairs through.
+    /// Returns the fastest volume on real scenes, as measured: see `docs/performance.md`. A box is
+    /// enough at rest. In motion, boxes that move leave a third to a tenth of the pairs.
     pub fn default_for(kind: QueryKind) -> Bv {
         if kind.is_at_rest() { Bv::Aabb } else { Bv::Linear }
     }

@@ -1,43 +1,48 @@
-//! The choices of certified solvers.
+//! Precision, tolerance and limits of certified solvers.
 
 use super::Solver;
 use crate::error::Error;
 use nearmiss_kernels::prim::inclusion::Params;
 
-/// A solver of features in motion that misses none and is never late: how finely it tells times, and how long it looks.
+/// A certified solver of features in motion, with its precision, tolerance and limit of work.
+///
+/// It misses no contact, and no time is late.
 ///
 /// ```
 /// use nearmiss::Continuous;
 /// use nearmiss::research::{Certified, CertifiedPrecision, WithSolver};
 ///
-/// // In f64 alone; what comes within a thousandth is in contact.
+/// // In f64 alone; features within a thousandth are in contact.
 /// let certified = Certified { separation: 1e-3, ..Certified::by(CertifiedPrecision::F64) };
 /// let query = Continuous::by(certified);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Certified {
-    /// What it computes in.
+    /// Precision of the computation.
     pub precision: CertifiedPrecision,
-    /// How near to contact may count as one, a length; every time is early by what it takes to move that far, or less. 0 asks
-    /// for all that the precision gives; one for all pairs. `None`: of each pair the smaller
-    /// default of its two bodies,
-    /// [`Certified::TOLERANCE`] of a body's mean edge.
+    /// Tolerance of all pairs: a length from 0, in scene units. Features this near may count as in
+    /// contact. Every time is early by at most the time that it takes to move this far. 0 uses the
+    /// full precision. `None`: each pair has the smaller default of its two bodies, which is
+    /// [`Certified::TOLERANCE`] times a body's mean edge.
     pub tolerance: Option<f64>,
-    /// The most boxes that are looked at for a pair before it is left undecided; `None` for
-    /// [`Certified::MAX_ITERATIONS`]. Refused in f32 alone without a separation, where no boxes are tested.
+    /// Most boxes that are tested for a pair before it is left undecided; `None` for
+    /// [`Certified::MAX_ITERATIONS`]. Refused in f32 alone without a minimum separation: then no
+    /// boxes are tested.
     pub max_iterations: Option<u32>,
-    /// Features that come this near are in contact, a length; times are then of coming so near. 0 for touching.
+    /// Minimum separation: a length from 0, in scene units. Features this near are in contact, and
+    /// a time is when they first are. 0 for touching.
     pub min_separation: f64,
 }
 
-/// What a certified solver computes in. None misses; they differ in what they leave undecided, and in cost.
+/// Precision of a certified solver. None misses a contact. They differ in cost, and in the number
+/// of undecided pairs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum CertifiedPrecision {
-    /// In f32 and, where that is not enough, in f64 and beyond.
+    /// In f32, then in f64 and beyond if f32 is not enough.
     #[default]
     Mixed,
-    /// In f32 alone: leaves more undecided.
+    /// In f32 alone: leaves more pairs undecided.
     F32,
     /// In f64 alone: costs more.
     F64,
@@ -50,18 +55,19 @@ impl CertifiedPrecision {
 }
 
 impl Certified {
-    /// The tolerance when none is named, in mean edges; rounded down to a power of two, so that it does not hang on the
-    /// order in which edges are summed. Smaller costs more; larger takes more near misses for contacts.
+    /// Default tolerance, in mean edges. The product is rounded down to a power of two, so that it
+    /// does not depend on the order of summation. A smaller tolerance costs more; a larger one
+    /// takes more near misses for contacts.
     pub const TOLERANCE: f64 = 1e-4;
-    /// The budget when none is named: ten times what the hardest pairs of public scenes take.
+    /// Default of `max_iterations`: ten times the demand of the hardest pairs of public scenes.
     pub const MAX_ITERATIONS: u32 = Params::MAX_ITERATIONS;
 
-    /// In that precision, all other choices at their defaults.
+    /// Returns the solver of a precision, with all other choices at their defaults.
     pub const fn by(precision: CertifiedPrecision) -> Certified {
         Certified { precision, tolerance: None, max_iterations: None, min_separation: 0.0 }
     }
 
-    /// Its name.
+    /// Returns its name.
     pub const fn name(&self) -> Solver {
         match self.precision {
             CertifiedPrecision::Mixed => Solver::Certified,
@@ -70,47 +76,55 @@ impl Certified {
         }
     }
 
-    /// Whether the lengths are lengths, and there is a budget.
+    /// Checks that lengths are finite and at least 0, and that the limit has an effect.
     pub(super) fn check(&self) -> Result<(), Error> {
         let is_length = |x: f64| (0.0..f64::INFINITY).contains(&x);
-        let (what, advice) = if !is_length(self.min_separation) {
-            ("a separation that is no length", "give a length from 0")
-        } else if self.tolerance.is_some_and(|t| !is_length(t)) || self.max_iterations == Some(0) {
-            (
-                "a tolerance that is no length, or a budget of no boxes",
-                "give a tolerance from 0, and at least 1 box",
-            )
-        } else if self.max_iterations.is_some() && !self.tests_boxes() {
-            (
-                "a budget of boxes for certified-f32 without a separation, which tests no boxes",
-                "leave it out, or choose certified or certified-f64",
-            )
-        } else {
-            return Ok(());
+        let no_length = |name: &str, value: f64| Error::InvalidArgument {
+            what: format!("{name} must be finite and at least 0, got {value}"),
+            advice: "give a length in the unit of the scene".into(),
         };
-        Err(Error::InvalidArgument { what: what.into(), advice: advice.into() })
+        if !is_length(self.min_separation) {
+            return Err(no_length("minimum separation", self.min_separation));
+        }
+        if let Some(tolerance) = self.tolerance.filter(|&tolerance| !is_length(tolerance)) {
+            return Err(no_length("tolerance", tolerance));
+        }
+        match self.max_iterations {
+            Some(0) => Err(Error::InvalidArgument {
+                what: "the limit of iterations must be at least 1, got 0".into(),
+                advice: "give a larger limit".into(),
+            }),
+            Some(limit) if !self.tests_boxes() => Err(Error::InvalidArgument {
+                what: format!(
+                    "the limit of iterations has no effect, got {limit}: certified-f32 without a \
+                     minimum separation tests no boxes"
+                ),
+                advice: "leave the limit out, or use certified or certified-f64".into(),
+            }),
+            _ => Ok(()),
+        }
     }
 
-    /// Whether a pair may be searched by boxes, so that a budget means something.
+    /// Returns whether a pair may be searched by boxes, so that a limit of them has an effect.
     fn tests_boxes(&self) -> bool {
         self.precision != CertifiedPrecision::F32 || self.is_apart()
     }
 
-    /// Whether a separation above 0 is asked for.
+    /// Returns whether the minimum separation is above 0.
     #[doc(hidden)]
     pub fn is_apart(&self) -> bool {
         self.min_separation > 0.0
     }
 
-    /// Within what distance of each other two features may be listed: the separation and the tolerance. The volumes bring it
-    /// all of these, whatever their shape.
+    /// Returns the largest distance of features that may be listed: minimum separation plus
+    /// tolerance. Volumes of such features overlap, for every kind of volume.
     pub(crate) fn listed_within(&self) -> f64 {
         let p = self.params();
-        // Above 0 also where nothing was asked for: what precision cannot tell has its own part of the growth.
+        // Above 0 even if both are 0. The growth of volumes has a part of its own for rounding.
         (p.min_separation + p.tolerance).max(f64::MIN_POSITIVE)
     }
 
-    /// What the test is asked; `tolerance` must have been chosen.
+    /// Returns the parameters of the test. A `tolerance` of `None` counts as 0: choose it before.
     #[doc(hidden)]
     pub fn params(&self) -> Params {
         let budget = self.max_iterations.unwrap_or(Certified::MAX_ITERATIONS);

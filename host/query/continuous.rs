@@ -4,29 +4,31 @@ use super::{Certified, CertifiedPrecision, ListedRows, Question, Search, Solver}
 use crate::contacts::Contact;
 use crate::error::Error;
 
-/// Vertex/face and edge/edge pairs that meet at some t in [0, 1], and when first.
+/// Contacts of a step: vertex/face and edge/edge pairs that meet at some t in [0, 1], with their
+/// first times.
 ///
 /// No contact is missed, and no time is late.
 ///
 /// ```
 /// use nearmiss::Continuous;
 ///
-/// // Features within a thousandth are in contact; times are early by at most a millionth of a length.
+/// // Features within a thousandth are in contact. Times are early by at most the time that it
+/// // takes to move by a millionth.
 /// let query = Continuous::default().with_min_separation(1e-3).with_tolerance(1e-6);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Continuous {
-    /// The test of a pair.
+    /// Test of a pair.
     pub(crate) solver: ContinuousSolver,
     /// How candidates are found.
     pub(crate) search: Search,
-    /// Whether the start of the step is taken to be free of crossing triangles. By default the
+    /// Whether the start of the step is assumed to be free of crossing triangles. By default the
     /// pairs that share a point at t = 0 are counted:
     /// [`Answer::starts_crossing`](crate::Answer::starts_crossing).
     pub(crate) assume_free: bool,
 }
 
-/// The first contact of a step: how far the step may go. Never late.
+/// Time of the first contact of a step, which is how far the step may go. Never late.
 ///
 /// ```
 /// use nearmiss::Earliest;
@@ -36,26 +38,26 @@ pub struct Continuous {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Earliest {
-    /// The test of a pair.
+    /// Test of a pair.
     pub(crate) solver: ContinuousSolver,
     /// How candidates are found.
     pub(crate) search: Search,
-    /// Whether the start of the step is taken to be free of crossing triangles, as in
+    /// Whether the start of the step is assumed to be free of crossing triangles, as in
     /// [`Continuous`].
     pub(crate) assume_free: bool,
 }
 
-/// The test of a pair of features in motion.
+/// Test of a pair of features in motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ContinuousSolver {
-    /// Isolated roots: never misses, is never late.
+    /// Isolated roots: misses no contact, and no time is late.
     Certified(Certified),
-    /// The seed's cubic. Can miss degenerate motion; in f32 it can be late, too.
+    /// The paper's cubic. Can miss degenerate motion; in f32 it can be late, too.
     Cubic(Precision),
 }
 
-/// What a solver without a promise computes in.
+/// Precision of a solver that can miss contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Precision {
     /// In f32.
@@ -86,7 +88,7 @@ impl ContinuousSolver {
         ContinuousSolver::Cubic(Precision::F32),
     ];
 
-    /// Its name.
+    /// Returns its name.
     pub const fn name(&self) -> Solver {
         match self {
             ContinuousSolver::Certified(certified) => certified.name(),
@@ -95,13 +97,13 @@ impl ContinuousSolver {
         }
     }
 
-    /// The solver of that name, all other choices at their defaults; none where it is another
-    /// kind's.
+    /// Returns the solver of a name, with all other choices at their defaults. `None` if the solver
+    /// is for another kind of query.
     pub fn named(name: Solver) -> Option<ContinuousSolver> {
         ContinuousSolver::ALL.into_iter().find(|solver| solver.name() == name)
     }
 
-    /// The choices of a certified one.
+    /// Returns the choices of a certified solver.
     pub const fn certified(&self) -> Option<&Certified> {
         match self {
             ContinuousSolver::Certified(certified) => Some(certified),
@@ -109,7 +111,7 @@ impl ContinuousSolver {
         }
     }
 
-    /// The choices of a certified one, or the default ones.
+    /// Returns the choices of a certified solver, or the default ones.
     fn or_certified(&self) -> Certified {
         self.certified().copied().unwrap_or_default()
     }
@@ -122,37 +124,36 @@ impl ContinuousSolver {
     }
 }
 
-/// What both kinds say of themselves.
+/// Builders and properties of both kinds of queries in motion.
 macro_rules! in_motion {
     ($kind:ident, $rows:ident) => {
         impl $kind {
-            /// By that solver, all other choices at their defaults.
+            /// Returns a query by a solver, with all other choices at their defaults.
             pub(crate) fn by(solver: impl Into<ContinuousSolver>) -> $kind {
                 $kind { solver: solver.into(), ..$kind::default() }
             }
 
-            /// The same, with a tolerance: a length from 0.
+            /// Sets the tolerance: a length from 0, in scene units.
             ///
-            /// Features this near may be reported as undecided, and every time is early by at most
-            /// what it takes to move this far. 0 asks for all that the precision gives. By default
-            /// of each pair the smaller of its two bodies' tolerances, 1e-4 of a body's mean edge.
-            /// A query that misses contacts becomes a certain one.
+            /// Features this near may be reported as undecided. Every time is early by at most the
+            /// time that it takes to move this far. 0 uses the full precision. By default each pair
+            /// has the smaller tolerance of its two bodies: 1e-4 of a body's mean edge. A query
+            /// that can miss contacts becomes a certified one.
             #[must_use]
             pub fn with_tolerance(self, tolerance: f64) -> $kind {
                 self.certainly(Certified { tolerance: Some(tolerance), ..self.solver.or_certified() })
             }
 
-            /// The same, with a minimum separation: a length from 0. Features that come this near
-            /// are in contact, and times are those of coming so near. A query that misses contacts
-            /// becomes a certain one.
+            /// Sets the minimum separation: a length from 0, in scene units. Features this near are
+            /// in contact, and a time is when they first are. A query that can miss contacts
+            /// becomes a certified one.
             #[must_use]
             pub fn with_min_separation(self, min_separation: f64) -> $kind {
                 self.certainly(Certified { min_separation, ..self.solver.or_certified() })
             }
 
-            /// The same, with an upper bound of the solver's iterations for a pair, from 1; a pair
-            /// that takes more is reported as undecided. A query that misses contacts becomes a
-            /// certain one.
+            /// Sets the most iterations of the solver for a pair, from 1. A pair that needs more is
+            /// reported as undecided. A query that can miss contacts becomes a certified one.
             #[must_use]
             pub fn with_max_iterations(self, max_iterations: u32) -> $kind {
                 self.certainly(Certified {
@@ -165,7 +166,7 @@ macro_rules! in_motion {
                 $kind { solver: ContinuousSolver::Certified(certified), ..self }
             }
 
-            /// The same, with a start that is taken to be free of crossing triangles, or not.
+            /// Sets whether the start of the step is assumed to be free of crossing triangles.
             #[must_use]
             pub const fn assuming_free(self, assume_free: bool) -> $kind {
                 $kind { assume_free, ..self }
@@ -210,19 +211,19 @@ macro_rules! in_motion {
     };
 }
 
-in_motion!(Continuous, of_contacts);
-in_motion!(Earliest, of_a_time);
+in_motion!(Continuous, contact_rows);
+in_motion!(Earliest, no_rows);
 
-fn of_contacts(solver: &ContinuousSolver) -> Option<ListedRows> {
+fn contact_rows(solver: &ContinuousSolver) -> Option<ListedRows> {
     let apart = solver.certified().filter(|certified| certified.is_apart());
     let advice = match apart {
-        Some(_) => "use a smaller separation or tolerance",
+        Some(_) => "use a smaller minimum separation or tolerance",
         None => "use a shorter step or a smaller scene, or query the earliest contact alone",
     };
     let within = apart.map(|certified| certified.min_separation);
     Some(ListedRows { bytes: size_of::<Contact>(), within, advice })
 }
 
-fn of_a_time(_: &ContinuousSolver) -> Option<ListedRows> {
+fn no_rows(_: &ContinuousSolver) -> Option<ListedRows> {
     None
 }

@@ -3,32 +3,34 @@
 use super::{ListedRows, Question, Search, Solver};
 use crate::contacts::TrianglePair;
 
-/// Triangle pairs that share a point at t = 0, by exact signs: none is missed, none is invented.
+/// Triangle pairs that share a point at t = 0, by exact signs.
+///
+/// No pair is missed, and every pair of the answer shares a point.
 ///
 /// ```
 /// use nearmiss::Discrete;
 ///
-/// // Triangles that share a vertex too, if they meet beyond it.
+/// // Also triangles that share a vertex, if they meet outside it.
 /// let query = Discrete::default().with_adjacent(true);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Discrete {
-    /// The test of a pair.
+    /// Test of a pair.
     pub(crate) test: TriangleTest,
     /// How candidates are found.
     pub(crate) search: Search,
 }
 
-/// The test of a pair of triangles that stand still.
+/// Test of a pair of triangles at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TriangleTest {
-    /// Exact signs by filter, then integers. Never wrong.
+    /// Exact signs, by a float filter and then by integers. Never wrong.
     Exact {
-        /// Also triangles that share a vertex, where they meet beyond it.
+        /// Also triangles that share a vertex, if they meet outside it.
         adjacent: bool,
     },
-    /// The seed's float test. Can miss, can err.
+    /// The paper's float test. Can miss contacts, and can report false ones.
     Moller,
 }
 
@@ -42,7 +44,7 @@ impl TriangleTest {
     /// Every test, the default first.
     pub const ALL: [TriangleTest; 2] = [TriangleTest::Exact { adjacent: false }, TriangleTest::Moller];
 
-    /// Its name.
+    /// Returns its name.
     pub const fn name(&self) -> Solver {
         match self {
             TriangleTest::Exact { .. } => Solver::Exact,
@@ -50,7 +52,7 @@ impl TriangleTest {
         }
     }
 
-    /// Whether it answers for triangles that share a vertex.
+    /// Returns whether triangles that share a vertex are tested.
     pub(crate) const fn has_adjacent(&self) -> bool {
         match self {
             TriangleTest::Exact { adjacent } => *adjacent,
@@ -60,13 +62,13 @@ impl TriangleTest {
 }
 
 impl Discrete {
-    /// By that test, all other choices at their defaults.
+    /// Returns a query by a test, with all other choices at their defaults.
     pub(crate) fn by(test: TriangleTest) -> Discrete {
         Discrete { test, ..Discrete::default() }
     }
 
-    /// The same, with triangles that share a vertex, if they meet beyond it; or without. By exact
-    /// signs.
+    /// Sets whether triangles that share a vertex are tested; they are reported if they meet
+    /// outside it. The test is by exact signs.
     #[must_use]
     pub const fn with_adjacent(self, adjacent: bool) -> Discrete {
         Discrete { test: TriangleTest::Exact { adjacent }, ..self }

@@ -1,10 +1,13 @@
-//! The least distance between bodies at t = 0.
+//! Least distance between bodies at t = 0.
 
 use super::{Question, Search, Solver, Traversal};
 use crate::error::Error;
 
-/// How far apart are the two bodies that are nearest at t = 0, and where? Of all pairs of triangles of different bodies that may
-/// meet; what is tested against itself is not asked about itself. 0 only where some share a point, which exact signs decide.
+/// Distance of the nearest two bodies at t = 0, and the triangles that have it.
+///
+/// All pairs of triangles of different bodies that filters allow are compared. Pairs within a body
+/// do not count, even if it has self-collision. The distance is 0 if and only if some pair shares a
+/// point, which exact signs decide.
 ///
 /// ```
 /// use nearmiss::{Body, Detector, Device, Distance, Mesh, device::Backend, mesh::Positions};
@@ -14,13 +17,14 @@ use crate::error::Error;
 ///     Mesh::new("a triangle", Positions::F32(corners), vec![[0, 1, 2]]).map(Body::deformable)
 /// };
 /// let bodies = vec![triangle(0.0)?, triangle(0.25)?];
-/// let nearest = Detector::new(Device::open(Backend::Cpu, None)?, bodies)?.query(&Distance::default())?;
+/// let mut detector = Detector::new(Device::open(Backend::Cpu, None)?, bodies)?;
+/// let nearest = detector.query(&Distance::default())?;
 /// assert_eq!(nearest.map(|nearest| nearest.distance), Some(0.25));
 /// # Ok::<(), nearmiss::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Distance {
-    /// How it is searched: it has a walk of its own, [`Traversal::NearestFirst`], and no other.
+    /// How candidates are found. The only walk is [`Traversal::NearestFirst`].
     pub(crate) search: Search,
 }
 
@@ -53,8 +57,8 @@ impl Question for Distance {
         match self.search.traversal {
             None | Some(Traversal::NearestFirst) => Ok(()),
             Some(other) => Err(Error::InvalidArgument {
-                what: format!("a distance by the traversal {other:?}"),
-                advice: "leave the traversal to the query: it has one of its own, nearest first".into(),
+                what: format!("traversal `{}` cannot be used with a distance query", other.name()),
+                advice: "leave the traversal out: the query has one of its own".into(),
             }),
         }
     }

@@ -1,98 +1,102 @@
-//! The kinds of queries: a line each.
+//! Kinds of queries, from one line each.
 
 use super::{Certified, Search, Solver};
 use crate::error::Error;
 
-/// The rows of an answer that lists pairs.
+/// Rows of an answer that lists pairs.
 pub(crate) struct ListedRows {
-    /// Bytes of one.
+    /// Bytes of a row.
     pub bytes: usize,
-    /// Pairs of features are listed that are this near at the start, a length; `None` if that is
-    /// not known of any.
+    /// Distance within which all pairs of features at the start are listed; `None` if that is not
+    /// known.
     pub within: Option<f64>,
-    /// How to get fewer.
+    /// Advice to get fewer rows.
     pub advice: &'static str,
 }
 
-/// What a kind of query says of itself.
+/// Properties of a kind of query.
 pub(crate) trait Question {
-    /// Whether it asks about t = 0 alone: then the end of a step is not looked at.
+    /// Returns whether it is about t = 0 alone. Then the end of a step is not read.
     fn is_at_rest() -> bool
     where
         Self: Sized;
-    /// Whether it asks for pairs of vertices, edges and faces, not of triangles.
+    /// Returns whether it tests vertices, edges and faces, instead of triangles.
     fn is_of_features() -> bool
     where
         Self: Sized,
     {
         true
     }
-    /// Whether it asks about pairs within one body, where that is tested against itself.
+    /// Returns whether it tests pairs within a body that has self-collision.
     fn is_within_bodies() -> bool
     where
         Self: Sized,
     {
         true
     }
-    /// Whether it may be searched by more than one walk.
+    /// Returns whether it has a choice of walks.
     fn takes_traversals() -> bool
     where
         Self: Sized,
     {
         true
     }
-    /// With every solver that answers it, all other choices at their defaults; the default first.
+    /// Returns a query for each of its solvers, the default first. All other choices are at their
+    /// defaults.
     fn every() -> Vec<Self>
     where
         Self: Sized;
-    /// How candidates are found.
+    /// Returns how candidates are found.
     fn search(&self) -> &Search;
-    /// The same, to change it.
+    /// Returns how candidates are found, to change it.
     fn search_mut(&mut self) -> &mut Search;
-    /// The name of its test.
+    /// Returns the name of its test.
     fn solver(&self) -> Solver;
-    /// The choices of its certified solver.
+    /// Returns the choices of its certified solver, if it has one.
     fn certified(&self) -> Option<&Certified> {
         None
     }
-    /// The same, to change them.
+    /// Returns the choices of its certified solver, to change them.
     fn certified_mut(&mut self) -> Option<&mut Certified> {
         None
     }
-    /// Whether triangles that share a vertex are candidates: their features without a common vertex may meet.
+    /// Returns whether triangles that share a vertex are candidates: their features without a
+    /// common vertex may meet.
     fn keeps_adjacent(&self) -> bool {
         true
     }
-    /// Within what distance of each other two features may be listed. The volumes bring all of these together.
+    /// Returns the largest distance of features that may be listed. Volumes of such features
+    /// overlap.
     fn listed_within(&self) -> f64 {
         0.0
     }
-    /// Whether it counts the triangle pairs that share a point at the start of the step.
+    /// Returns whether triangle pairs that share a point at the start of the step are counted.
     fn checks_start(&self) -> bool {
         false
     }
-    /// What it lists; `None` if it answers with one number.
+    /// Returns the rows of its answer; `None` if the answer is one row at most.
     fn rows(&self) -> Option<ListedRows> {
         None
     }
-    /// Whether its numbers mean something.
+    /// Checks its numbers.
     fn check(&self) -> Result<(), Error> {
         Ok(())
     }
 }
 
-/// From lines of `Kind = "name"` makes the query, the names of its kinds, and the way to each kind's own type.
+/// Makes the query, the names of its kinds and the conversions from each kind's own type. The input
+/// is lines of `Kind = "name"`.
 macro_rules! kinds {
     ($($(#[doc = $about:literal])+ $kind:ident = $name:literal,)+) => {
-        /// What is asked of a scene: a kind of question with the choices it has, the same for the library, the command line, the
-        /// benches and the tests.
+        /// A query of any kind, with its choices. The program, the benches and the tests use the
+        /// same type.
         ///
         /// ```
         /// use nearmiss::{Continuous, Query};
         ///
         /// // All contacts of a step.
         /// let query = Query::continuous();
-        /// // Those of coming within a thousandth.
+        /// // Contacts at a distance of a thousandth.
         /// let query = Query::from(Continuous::default().with_min_separation(1e-3));
         /// ```
         #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,7 +106,7 @@ macro_rules! kinds {
         }
 
         named! {
-            /// The name of a kind of query: what reports tell.
+            /// Name of a kind of query, as in reports.
             pub enum QueryKind {
                 $($(#[doc = $about])+ $kind = $name,)+
             }
@@ -115,7 +119,7 @@ macro_rules! kinds {
         })+
 
         $(impl $kind {
-            /// The same, with tiles or trees rebuilt then.
+            /// Sets when tiles or trees are rebuilt.
             #[must_use]
             pub const fn with_rebuild(mut self, rebuild: Rebuild) -> $kind {
                 self.search.rebuild = Some(rebuild);
@@ -124,28 +128,28 @@ macro_rules! kinds {
         })+
 
         impl QueryKind {
-            /// Whether it asks about t = 0 alone: then the end of a step is not looked at.
+            /// Returns whether it is about t = 0 alone. Then the end of a step is not read.
             pub fn is_at_rest(self) -> bool {
                 match self {
                     $(QueryKind::$kind => <$kind as Question>::is_at_rest(),)+
                 }
             }
 
-            /// Whether it may be searched by more than one walk.
+            /// Returns whether it has a choice of walks.
             pub(crate) fn takes_traversals(self) -> bool {
                 match self {
                     $(QueryKind::$kind => <$kind as Question>::takes_traversals(),)+
                 }
             }
 
-            /// Whether it asks about pairs within one body, where that is tested against itself.
+            /// Returns whether it tests pairs within a body that has self-collision.
             pub fn is_within_bodies(self) -> bool {
                 match self {
                     $(QueryKind::$kind => <$kind as Question>::is_within_bodies(),)+
                 }
             }
 
-            /// Whether it asks for pairs of vertices, edges and faces, not of triangles.
+            /// Returns whether it tests vertices, edges and faces, instead of triangles.
             pub(crate) fn is_of_features(self) -> bool {
                 match self {
                     $(QueryKind::$kind => <$kind as Question>::is_of_features(),)+
@@ -154,15 +158,15 @@ macro_rules! kinds {
         }
 
         impl Query {
-            /// The name of its kind.
+            /// Returns the name of its kind.
             pub const fn kind(&self) -> QueryKind {
                 match self {
                     $(Query::$kind(_) => QueryKind::$kind,)+
                 }
             }
 
-            /// Every question with every solver that answers it, all other choices at their defaults: what tests and
-            /// `selftest` run over.
+            /// Returns a query for each kind and each of its solvers, as tests and `selftest` need
+            /// them. All other choices are at their defaults.
             pub(crate) fn every() -> std::vec::IntoIter<Query> {
                 let all: [Vec<Query>; [$($name),+].len()] =
                     [$(<$kind as Question>::every().into_iter().map(Query::from).collect()),+];

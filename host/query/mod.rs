@@ -1,5 +1,7 @@
-//! Queries, with their accuracy. None misses a contact: solvers that can, and how candidates are found, are
-//! [`research`](crate::research).
+//! Queries, with their accuracy.
+//!
+//! None misses a contact. Solvers that can miss one are in [`research`](crate::research), with the
+//! choices of how candidates are found.
 
 pub(crate) mod bv;
 pub(crate) mod certified;
@@ -36,20 +38,20 @@ pub(crate) use kind::ListedRows;
 use kind::{Question, kinds};
 
 kinds! {
-    /// Which triangle pairs share a point at t = 0?
+    /// Triangle pairs that share a point at t = 0.
     Discrete = "discrete",
-    /// Which vertex/face and edge/edge pairs meet at some t in [0, 1], and when first?
+    /// Vertex/face and edge/edge pairs that meet at some t in [0, 1], with their first times.
     Continuous = "continuous",
-    /// When does the first of them meet?
+    /// Time of the first contact of a step.
     Earliest = "earliest",
-    /// Which vertex/face and edge/edge pairs are within a distance of each other at t = 0, and where are they nearest?
+    /// Vertex/face and edge/edge pairs within a distance at t = 0, and their nearest points.
     Near = "near",
-    /// How far apart are the two bodies that are nearest at t = 0, and where?
+    /// Distance of the nearest two bodies at t = 0, and the triangles that have it.
     Distance = "distance",
 }
 
 impl QueryKind {
-    /// The solvers that answer it, the default first.
+    /// Returns its solvers, the default first.
     pub(crate) fn solvers(self) -> Vec<Solver> {
         Query::every().filter(|query| query.kind() == self).map(|query| query.solver()).collect()
     }
@@ -61,93 +63,94 @@ impl Default for Query {
     }
 }
 
-/// The questions, each with all choices at their defaults.
+/// A query of each kind, with all choices at their defaults.
 impl Query {
-    /// Which triangle pairs share a point now, by exact signs.
+    /// Returns a query for triangle pairs that share a point at t = 0, by exact signs.
     pub fn discrete() -> Query {
         Discrete::default().into()
     }
 
-    /// Which pairs of features meet within the step, and when first, certified.
+    /// Returns a query for all contacts of the step, with certified times.
     pub fn continuous() -> Query {
         Continuous::default().into()
     }
 
-    /// When the first of them meets, certified: how far a step may go.
+    /// Returns a query for the first contact of the step, with a certified time: how far the step
+    /// may go.
     pub fn earliest() -> Query {
         Earliest::default().into()
     }
 
-    /// Which features are within a distance of each other now.
+    /// Returns a query for features within a distance at t = 0.
     pub fn near(distance: f64) -> Query {
         Near::within(distance).into()
     }
 
-    /// How far apart the nearest two bodies are now.
+    /// Returns a query for the distance of the nearest two bodies at t = 0.
     pub fn distance() -> Query {
         Distance::default().into()
     }
 }
 
 impl Query {
-    /// How candidates are found.
+    /// Returns how candidates are found.
     pub(crate) fn search(&self) -> Search {
         *self.question().search()
     }
 
-    /// The same, with candidates found in that way.
+    /// Sets how candidates are found.
     pub(crate) fn with_search(mut self, search: Search) -> Query {
         *self.question_mut().search_mut() = search;
         self
     }
 
-    /// The same, with that broad phase.
+    /// Sets the broad phase.
     pub(crate) fn with_broad(self, broad: Broad) -> Query {
         self.with_search(Search { broad: Some(broad), ..self.search() })
     }
 
-    /// The same, with tiles or trees made anew then.
+    /// Sets when tiles or trees are rebuilt.
     pub fn with_rebuild(self, rebuild: Rebuild) -> Query {
         self.with_search(Search { rebuild: Some(rebuild), ..self.search() })
     }
 
-    /// Whether the triangle pairs that share a point at the start of the step are counted: of a
-    /// continuous or an earliest query, unless it assumes that there are none.
+    /// Returns whether triangle pairs that share a point at the start of the step are counted.
+    /// Continuous and earliest queries count them, unless they assume that there are none.
     pub fn checks_start(&self) -> bool {
         self.question().checks_start()
     }
 
-    /// The name of the test of a pair.
+    /// Returns the name of the test of a pair.
     pub(crate) fn solver(&self) -> Solver {
         self.question().solver()
     }
 
-    /// The choices of its certified solver, where it has one.
+    /// Returns the choices of its certified solver, if it has one.
     pub(crate) fn certified(&self) -> Option<&Certified> {
         self.question().certified()
     }
 
-    /// The same, to change them.
+    /// Returns the choices of its certified solver, to change them.
     pub(crate) fn certified_mut(&mut self) -> Option<&mut Certified> {
         self.question_mut().certified_mut()
     }
 
-    /// The volume that will be used.
+    /// Returns the bounding volume that will be used.
     pub(crate) fn bv(&self) -> Bv {
         self.search().bv.unwrap_or(Bv::default_for(self.kind()))
     }
 
-    /// The broad phase that will be used on a GPU, or on a CPU.
+    /// Returns the broad phase that will be used on a GPU, or on a CPU.
     pub(crate) fn broad_on(&self, is_gpu: bool) -> Broad {
         if self.kind().takes_traversals() { self.search().broad_on(is_gpu, self.bv()) } else { Broad::Tree }
     }
 
-    /// The refit of trees that will be used on a GPU, or on a CPU.
+    /// Returns the refit of trees that will be used on a GPU, or on a CPU.
     pub(crate) fn refit_on(&self, is_gpu: bool) -> Refit {
         self.search().refit.unwrap_or(Refit::default_for(is_gpu))
     }
 
-    /// The walk of trees that will be used on a GPU, or on a CPU.
+    /// Returns the walk of trees that will be used on a GPU, or on a CPU.
     pub(crate) fn traversal_on(&self, is_gpu: bool) -> Traversal {
         match self.search().traversal {
             Some(traversal) => traversal,
@@ -156,29 +159,30 @@ impl Query {
         }
     }
 
-    /// Whether its numbers mean something: lengths are lengths, queues have possible sizes.
+    /// Checks its numbers and choices: lengths, sizes of queues, the walk and the broad phase.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] with what would.
+    /// [`Error::InvalidArgument`] with the first that is impossible, and a remedy.
     pub fn check(&self) -> Result<(), Error> {
         self.question().check()?;
         if self.kind().takes_traversals() && self.search().traversal == Some(Traversal::NearestFirst) {
             return Err(Error::InvalidArgument {
-                what: format!("a {} query by the traversal nearest first", self.kind()),
-                advice: "keep that for distances, which have no other; choose another or none".into(),
+                what: format!("traversal `nearest-first` cannot be used with a {} query", self.kind()),
+                advice: "use another traversal, or leave it out: only distance queries have this one".into(),
             });
         }
         let by_tiles = self.search().broad == Some(Broad::Tiles);
         if !self.kind().takes_traversals() && by_tiles {
             return Err(Error::InvalidArgument {
-                what: format!("a {} query by tiles", self.kind()),
-                advice: "choose trees, or nothing: the nearest is sought down a tree".into(),
+                what: format!("broad phase `tiles` cannot be used with a {} query", self.kind()),
+                advice: "use `tree`, or leave it out: the nearest pair is searched down a tree".into(),
             });
         }
         self.search().check()
     }
 
-    /// The same without its numbers: queries of one shape use the same memory, whatever their distances and tolerances.
+    /// Returns the query without its numbers. Queries of one shape use the same memory for all
+    /// distances and tolerances.
     pub(crate) fn shape(&self) -> Query {
         let search = Search { rebuild: None, ..self.search() };
         let mut shape = self.with_search(search);
@@ -192,18 +196,19 @@ impl Query {
         shape
     }
 
-    /// What it lists; `None` if it answers with one number.
+    /// Returns the rows of its answer; `None` if the answer is one row at most.
     pub(crate) fn rows(&self) -> Option<ListedRows> {
         self.question().rows()
     }
 
-    /// Whether triangles that share a vertex are candidates.
+    /// Returns whether triangles that share a vertex are candidates.
     pub(crate) fn keeps_adjacent(&self) -> bool {
         self.question().keeps_adjacent()
     }
 
-    /// Within what distance of each other two features may be listed: of a certified solver the separation and the tolerance,
-    /// of a near query its distance, of others 0. The volumes bring it all of these, whatever their shape.
+    /// Returns the largest distance of features that may be listed. That is minimum separation plus
+    /// tolerance for a certified solver, the distance for a near query, and 0 for others. Volumes
+    /// of such features overlap, for every kind of volume.
     pub(crate) fn listed_within(&self) -> f64 {
         self.question().listed_within()
     }

@@ -1,14 +1,15 @@
-//! Choices that have names: one list gives an enum its variants, their documentation, names and descriptions.
+//! Choices that have names. One list gives an enum its variants, with documentation, names and
+//! descriptions.
 
-/// A choice that people name: on a command line, in a file, in a report.
+/// A choice with a name, as on a command line, in a file or in a report.
 pub trait Named: Copy + Eq + Send + Sync + 'static {
     /// Every choice.
     const ALL: &'static [Self];
-    /// Its name.
+    /// Returns its name.
     fn name(self) -> &'static str;
-    /// What it is, as its documentation says.
+    /// Returns its description, from its documentation.
     fn about(self) -> &'static str;
-    /// The choice of that name.
+    /// Returns the choice of a name, if there is one.
     fn of(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|choice| choice.name() == name)
     }
@@ -27,7 +28,7 @@ macro_rules! named {
             /// Every choice.
             pub const ALL: [$choice; [$($name),+].len()] = [$($choice::$variant),+];
 
-            /// Its name, on the command line and in reports.
+            /// Returns its name, as on the command line and in reports.
             pub const fn name(self) -> &'static str {
                 match self {
                     $($choice::$variant => $name,)+

@@ -1,10 +1,10 @@
-//! Features at t = 0 within a distance.
+//! Features within a distance at t = 0.
 
 use super::{ListedRows, Question, Search, Solver};
 use crate::contacts::NearPair;
 use crate::error::Error;
 
-/// Which vertex/face and edge/edge pairs are within a distance of each other at t = 0, and where are they nearest?
+/// Vertex/face and edge/edge pairs within a distance at t = 0, and their nearest points.
 ///
 /// ```
 /// let query = nearmiss::Query::near(0.01);
@@ -12,17 +12,17 @@ use crate::error::Error;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Near {
-    /// How far apart two features may be to be listed, a length above 0.
+    /// Largest distance of a pair that is listed: a length above 0, in scene units.
     pub distance: f64,
     /// How candidates are found.
     pub(crate) search: Search,
 }
 
 impl Near {
-    /// The distance of [`QueryExt::every`](crate::research::QueryExt::every).
+    /// Distance that [`QueryExt::every`](crate::research::QueryExt::every) has.
     pub const DISTANCE: f64 = 1.0 / 64.0;
 
-    /// Within that distance, all other choices at their defaults.
+    /// Returns a query within a distance, with all other choices at their defaults.
     pub fn within(distance: f64) -> Near {
         Near { distance, search: Search::default() }
     }
@@ -56,8 +56,8 @@ impl Question for Near {
             return Ok(());
         }
         Err(Error::InvalidArgument {
-            what: format!("a distance of {}", self.distance),
-            advice: "give a length above 0".into(),
+            what: format!("distance must be finite and above 0, got {}", self.distance),
+            advice: "give a length in the unit of the scene".into(),
         })
     }
 }

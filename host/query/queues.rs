@@ -1,55 +1,57 @@
-//! The sizes of work queues.
+//! Sizes of work queues.
 
 use crate::error::Error;
 use nearmiss_kernels::abi::control::{MOST_BLOCKS, MOST_PLACES};
 use nearmiss_kernels::queue::worker::ROOM;
 
-/// How queues are evened between launches.
+/// Balancing of queues between launches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 pub enum Balance {
-    /// The paper's: a kernel copies units from segment to segment; the host looks after each round whether any are left.
+    /// As in the paper: a kernel copies units from segment to segment. After each round the host
+    /// checks whether any are left.
     Copy,
-    /// What is left goes to one list, and each queue takes its share of it: nothing is copied, no host in between.
+    /// Units that are left go to one list, and each queue takes its share. It needs neither a copy
+    /// nor the host.
     View,
 }
 
-/// Work queues that are evened between launches.
+/// Work queues that are balanced between launches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct QueueShape {
-    /// Queues, a block each; `None` for as many as the machine runs at once.
+    /// Number of queues, one per block; `None` for as many as the machine runs at once.
     pub cores: Option<u32>,
     /// Units that a queue holds on chip, up to [`QueueShape::ROOM`].
     pub local: u32,
-    /// Units that a queue takes at a time from its share of what was left.
+    /// Units that a queue takes at a time from its share of the list.
     pub take: u32,
-    /// Units of a queue that device memory has room for at first. Too few are not an error: it grows.
+    /// Initial capacity of a queue in device memory, in units. It grows when it is too small.
     pub segment: u32,
-    /// A block leaves when more than this share of all has run dry: numerator, denominator.
+    /// Share of empty queues above which a block leaves, as numerator and denominator.
     pub idle: (u32, u32),
-    /// Steps that a block takes before it heeds those that ran dry: a launch must be worth its cost.
+    /// Steps that a block takes before it counts empty queues, so that a launch is worth its cost.
     pub patience: u32,
-    /// How queues are evened.
+    /// Balancing between launches.
     pub balance: Balance,
 }
 
-/// Work queues that help each other out within one launch.
+/// Work queues that share work within one launch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct StealShape {
-    /// Queues, a block each; `None` for as many as the machine runs at once.
+    /// Number of queues, one per block; `None` for as many as the machine runs at once.
     pub cores: Option<u32>,
     /// Units that a queue holds on chip, up to [`QueueShape::ROOM`].
     pub local: u32,
-    /// Units of a queue that device memory has room for at first. Too few are not an error: it grows.
+    /// Initial capacity of a queue in device memory, in units. It grows when it is too small.
     pub segment: u32,
-    /// Chunks of at most 64 units that may be offered in one launch, up to [`StealShape::MOST_POOL`]; when they have been,
-    /// blocks keep what they have. `None` for 32 a queue.
+    /// Most chunks that may be offered in one launch, up to [`StealShape::MOST_POOL`]; `None` for
+    /// 32 a queue. A chunk has at most 64 units. After the last one, blocks keep their units.
     pub pool: Option<u32>,
-    /// How often a block without work looks for some, while others have work, before it leaves.
+    /// Attempts of a block without work to get some, while others have work, before it leaves.
     pub tries: u32,
-    /// Whether units are offered even when no block looks for some.
+    /// Whether units are offered even if no block is without work.
     pub eager: bool,
 }
 
@@ -57,30 +59,35 @@ pub struct StealShape {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct FrontShape {
-    /// The queues by which pairs that meet anew go deeper. Their units come from one list, whatever `balance` says.
+    /// Queues that descend from pairs that begin to overlap. Their units come from one list, for
+    /// any `balance`.
     pub queue: QueueShape,
-    /// Every so many frames pairs that are apart give way to an ancestor that is; 0 for never. A test more for each pair,
-    /// and a shorter front.
+    /// Frames between prunings; 0 for never. Pruning replaces pairs that are apart by an ancestor
+    /// that is apart too. It costs one test per pair, and makes the front shorter.
     pub prune_every: u32,
-    /// Whether the front is given up while it costs more overlap tests than a descent from the roots.
+    /// Whether the front is dropped while it costs more overlap tests than a descent from the
+    /// roots.
     pub drop: bool,
 }
 
 impl FrontShape {
-    /// Native queues; pruned every fourth frame, given up where it does not pay.
+    /// Returns a front with native queues, pruned every fourth frame, and dropped when a descent
+    /// from the roots costs less.
     pub const fn native() -> FrontShape {
         FrontShape { queue: QueueShape::native(), prune_every: 4, drop: true }
     }
 }
 
 impl QueueShape {
-    /// Units that a queue can hold on chip.
+    /// Most units that a queue can hold on chip.
     pub const ROOM: u32 = ROOM;
 
-    /// The paper's machine with the constants of the released program. The paper gives each core a queue and balances
-    /// them; its machine has 30 cores. The released program runs 128 queues of 64 threads, about four a core, with room
-    /// for 600 units each: 4,800 B, of which the 16 KB of shared memory of a core hold three, with other state besides.
-    /// So not all 128 are on the machine at once: those that are not start when others leave.
+    /// Returns the paper's queues, with the constants of the released program.
+    ///
+    /// In the paper each core has a queue, and its machine has 30 cores. The released program runs
+    /// 128 queues of 64 threads, about four a core, of 600 units each. A queue has 4,800 B. The 16
+    /// KB of shared memory of a core hold three of them, with other state. So not all 128 run at
+    /// once: the others start when some have left.
     pub const fn gtx285() -> QueueShape {
         QueueShape {
             cores: Some(128),
@@ -93,7 +100,8 @@ impl QueueShape {
         }
     }
 
-    /// As many queues as the machine runs at once, without a copy and without the host.
+    /// Returns as many queues as the machine runs at once, balanced without a copy and without the
+    /// host.
     pub const fn native() -> QueueShape {
         QueueShape {
             cores: None,
@@ -106,7 +114,7 @@ impl QueueShape {
         }
     }
 
-    /// Whether the sizes are possible.
+    /// Checks that the sizes are possible.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`].
@@ -114,8 +122,12 @@ impl QueueShape {
         sizes(self.cores, self.local, self.segment)?;
         if self.take == 0 || self.idle.1 == 0 || self.idle.0 > self.idle.1 {
             return Err(Error::InvalidArgument {
-                what: format!("queues that take {} units, idle share {:?}", self.take, self.idle),
-                advice: "take at least 1, and give the idle share as a fraction from 0 to 1".into(),
+                what: format!(
+                    "work queues must take at least 1 unit and have an idle share from 0 to 1, got {} and \
+                     {} of {}",
+                    self.take, self.idle.0, self.idle.1
+                ),
+                advice: "change `take` or `idle`".into(),
             });
         }
         Ok(())
@@ -123,15 +135,15 @@ impl QueueShape {
 }
 
 impl StealShape {
-    /// Chunks that a pool can hold.
+    /// Most chunks that a pool can hold.
     pub const MOST_POOL: u32 = MOST_PLACES;
 
-    /// As many queues as the machine runs at once.
+    /// Returns as many queues as the machine runs at once.
     pub const fn native() -> StealShape {
         StealShape { cores: None, local: ROOM, segment: 256, pool: None, tries: 1 << 14, eager: false }
     }
 
-    /// Whether the sizes are possible.
+    /// Checks that the sizes are possible.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`].
@@ -139,15 +151,15 @@ impl StealShape {
         sizes(self.cores, self.local, self.segment)?;
         match self.pool {
             Some(pool) if pool > Self::MOST_POOL => Err(Error::InvalidArgument {
-                what: format!("a pool of {pool} chunks"),
-                advice: format!("use at most {}", Self::MOST_POOL),
+                what: format!("pool must have at most {} chunks, got {pool}", Self::MOST_POOL),
+                advice: "use a smaller pool, or leave it out".into(),
             }),
             _ => Ok(()),
         }
     }
 }
 
-/// The most queues: more than any machine runs at once.
+/// Most queues, which is more than any machine runs at once.
 const MOST_CORES: u32 = MOST_BLOCKS;
 
 fn sizes(cores: Option<u32>, local: u32, segment: u32) -> Result<(), Error> {
@@ -156,8 +168,14 @@ fn sizes(cores: Option<u32>, local: u32, segment: u32) -> Result<(), Error> {
     if fits {
         return Ok(());
     }
+    let queues = cores.map_or_else(|| "as many as run at once".to_owned(), |cores| cores.to_string());
     Err(Error::InvalidArgument {
-        what: format!("{} queues of {local} units on chip and {segment} behind", cores.unwrap_or(0)),
-        advice: format!("use 1 to {MOST_CORES} queues of 1 to {ROOM} units"),
+        what: format!(
+            "sizes of work queues are impossible, got {local} units on chip, {segment} in memory, and \
+             {queues} queues"
+        ),
+        advice: format!(
+            "use 1 to {MOST_CORES} queues of 1 to {ROOM} units on chip, and at least 1 in memory"
+        ),
     })
 }

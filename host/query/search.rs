@@ -1,46 +1,46 @@
-//! How a query finds candidates. Nothing here changes an answer.
+//! Choices of how a query finds candidates. None changes an answer.
 
 use super::{Bv, FrontShape, QueueShape, StealShape, named};
 use crate::error::Error;
 
-/// How candidates are found: what every kind of query has, and what never changes an answer.
+/// Choices of how candidates are found. Every kind of query has them, and none changes an answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Search {
-    /// The broad phase; `None` for what is fastest on the machine.
+    /// Broad phase; `None` for the fastest of the machine.
     pub broad: Option<Broad>,
-    /// The volume; `None` for what is fastest.
+    /// Bounding volume; `None` for the fastest.
     pub bv: Option<Bv>,
-    /// The refit of trees; `None` for what is fastest on the machine.
+    /// Refit of trees; `None` for the fastest of the machine.
     pub refit: Option<Refit>,
-    /// The walk of trees; `None` for what is fastest on the machine.
+    /// Walk of trees; `None` for the fastest of the machine.
     pub traversal: Option<Traversal>,
-    /// When tiles or trees are built again; `None` for [`Rebuild::Auto`].
+    /// When tiles or trees are rebuilt; `None` for [`Rebuild::Auto`].
     pub rebuild: Option<Rebuild>,
 }
 
 impl Search {
-    /// Whether tiles or trees are built again by themselves.
+    /// Returns whether tiles or trees are rebuilt automatically.
     pub(crate) fn rebuilds(&self) -> bool {
         self.rebuild != Some(Rebuild::Manual)
     }
 
-    /// Whether trees were asked for, by a choice that is theirs.
+    /// Returns whether a choice is made that only trees have.
     pub(crate) fn is_of_trees(&self) -> bool {
         self.refit.is_some() || self.traversal.is_some()
     }
 
-    /// The broad phase of a machine where none was asked for, among those that a query may have.
+    /// Returns the chosen broad phase, or the fastest of a machine that has the other choices.
     pub(super) fn broad_on(&self, is_gpu: bool, bv: Bv) -> Broad {
         let fastest = if self.is_of_trees() { Broad::Tree } else { Broad::default_for(is_gpu, bv) };
         self.broad.unwrap_or(fastest)
     }
 
-    /// Whether queues have possible sizes, and tiles no choices of trees.
+    /// Checks that queues have possible sizes, and that tiles have no choices of trees.
     pub(super) fn check(&self) -> Result<(), Error> {
         if self.broad == Some(Broad::Tiles) && self.is_of_trees() {
             return Err(Error::InvalidArgument {
-                what: "tiles with a refit or a traversal of trees".into(),
-                advice: "choose trees, or leave out the refit and the traversal: tiles have one way".into(),
+                what: "broad phase `tiles` cannot be used with a refit or a traversal of trees".into(),
+                advice: "use `tree`, or leave out the refit and the traversal: tiles have one of each".into(),
             });
         }
         match self.traversal {
@@ -52,34 +52,38 @@ impl Search {
     }
 }
 
-/// How the tree is walked.
+/// Walk of the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 pub enum Traversal {
-    /// A walk a leaf. A walk of more steps than `budget` gives the rest of its stack to the next round.
+    /// One walk per leaf. After `budget` steps, a walk passes the rest of its stack to the next
+    /// round.
     PerLeaf {
-        /// Steps before a walk spills; `None` never spills.
+        /// Steps before a walk spills; `None` for never.
         budget: Option<u32>,
     },
-    /// Pairs of nodes from work queues, one a core, evened between launches: the paper's.
+    /// Pairs of nodes from work queues, one per core, balanced between launches, as in the paper.
     Queue(QueueShape),
-    /// Pairs of nodes from work queues that help each other out within one launch.
+    /// Pairs of nodes from work queues that share work within one launch.
     Steal(StealShape),
-    /// From where the last frame's descent ended: temporal coherence.
+    /// A descent that starts at the pairs of the last frame: temporal coherence.
     Front(FrontShape),
-    /// A few leaves seek their nearest, the nearer of two siblings first; then a walk a leaf into what is not farther. Of distances, which have
-    /// no other.
+    /// The only walk of distance queries. First a few leaves descend to their nearest leaf, into
+    /// the nearer of two siblings first. Then each leaf walks into all nodes that are not farther.
     NearestFirst,
 }
 
 impl Traversal {
-    /// Steps of a walk on a GPU before the rest of it is shared out: about the mean length of a walk on cloth, so
-    /// that half of the walks never spill and none makes its warp wait for long (measured, `benches/NOTES.md`).
+    /// Steps of a walk on a GPU before the rest of it is passed on. It is about the mean length of
+    /// a walk on cloth, as measured: see `benches/NOTES.md`. So half of the walks never spill, and
+    /// none delays its warp for long.
     pub const GPU_BUDGET: u32 = 64;
 
-    /// The fastest walk of a machine (measured, `docs/performance.md`). A CPU's threads balance by themselves. A GPU must
-    /// not wait for its longest walk: plain boxes are walked leaf by leaf, with their rest shared out; of volumes whose
-    /// tests cost more, fewer tests by pairs of nodes pay for the queues.
+    /// Returns the fastest walk of a machine, as measured: see `docs/performance.md`.
+    ///
+    /// Threads of a CPU balance by themselves. On a GPU the longest walk would delay the frame. So
+    /// walks of plain boxes are per leaf and pass the rest on. Other volumes have costlier tests;
+    /// pairs of nodes need fewer of them, which pays for the queues.
     pub fn default_for(is_gpu: bool, bv: Bv) -> Traversal {
         if !is_gpu {
             Traversal::PerLeaf { budget: None }
@@ -89,52 +93,65 @@ impl Traversal {
             Traversal::Queue(QueueShape::native())
         }
     }
+
+    /// Returns its name, as in messages.
+    pub(super) fn name(&self) -> &'static str {
+        match self {
+            Traversal::PerLeaf { .. } => "per-leaf",
+            Traversal::Queue(_) => "queue",
+            Traversal::Steal(_) => "steal",
+            Traversal::Front(_) => "front",
+            Traversal::NearestFirst => "nearest-first",
+        }
+    }
 }
 
 named! {
-    /// What candidates are found by.
+    /// Structure in which candidates are found.
     pub enum Broad {
-        /// A tree of volumes, level by level: the paper's.
+        /// A tree of volumes, as in the paper.
         Tree = "tree",
-        /// Runs of 32 neighbours along a curve, all against all where the runs' volumes overlap.
+        /// Tiles of 32 neighbours along a curve. If the volumes of two tiles overlap, all their
+        /// pairs are tested.
         Tiles = "tiles",
     }
 }
 
 impl Broad {
-    /// The fastest of a machine (measured, `docs/performance.md`): tiles, but for boxes with axes of their own, whose merges are
-    /// loose above so many.
+    /// Returns the fastest of a machine, as measured: see `docs/performance.md`. It is tiles,
+    /// except for boxes with axes of their own: merged boxes of 32 triangles are loose.
     pub fn default_for(_is_gpu: bool, bv: Bv) -> Broad {
         if matches!(bv, Bv::Aabb | Bv::Linear) { Broad::Tiles } else { Broad::Tree }
     }
 }
 
 named! {
-    /// When tiles or trees are built again from where the bodies are. No answer depends on it;
+    /// When tiles or trees are rebuilt from the positions of the bodies. No answer depends on it;
     /// hashes of lists between stages may.
     pub enum Rebuild {
-        /// By [`Detector::rebuild`](crate::Detector::rebuild) alone.
+        /// Only by [`Detector::rebuild`](crate::Detector::rebuild).
         Manual = "manual",
-        /// By itself, too, the default: before the first frame after bodies were placed for the
-        /// first time, and before the frame at which volume tests beyond those of the first frame
-        /// after building have cost as much as building, by count. The count is the same on every
-        /// machine, so the decision is. A submitted frame builds nothing.
+        /// Also automatically, the default. A rebuild precedes the first frame after bodies got
+        /// their first positions. After that, volume tests in excess of those of the first frame
+        /// after a rebuild are counted. When they have cost as much as a rebuild, the next frame
+        /// begins with one. The count is the same on every machine, so the decision is too. A
+        /// submitted frame has no rebuild.
         Auto = "auto",
     }
 }
 
 named! {
-    /// How the volumes of a tree follow its triangles. All ways give the same bits.
+    /// Refit: the update of a tree's volumes to its triangles. All ways return the same bits.
     pub enum Refit {
-        /// A launch a level, the paper's way.
+        /// One launch per level, as in the paper.
         Levels = "levels",
-        /// One launch for all volumes: a block a subtree, the rest by the block that is done last.
+        /// One launch for all volumes: one block per subtree, and the last block does the rest.
         Treelets = "treelets",
     }
 }
 
 impl Refit {
-    /// The fastest way of a machine.
+    /// Returns the fastest way of a machine.
     pub fn default_for(is_gpu: bool) -> Refit {
         if is_gpu { Refit::Treelets } else { Refit::Levels }
     }

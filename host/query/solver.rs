@@ -1,25 +1,28 @@
-//! The names of the tests of a pair, for reports and command lines; a query holds one with the choices it has.
+//! Names of the tests of a pair, for reports and command lines. A query holds one, with its
+//! choices.
 
 use super::{QueryKind, named};
 
 named! {
-    /// The name of a test of a pair of triangles or features: what reports tell, and a command line takes.
+    /// Name of a test of a pair of triangles or features, as in reports and on the command line.
     pub enum Solver {
-        /// Discrete: exact signs by filter, then integers. Never wrong. The default.
+        /// Discrete: exact signs, by a float filter and then by integers. Never wrong. The default.
         Exact = "exact",
-        /// Discrete: the paper's float test. Can miss, can err.
+        /// Discrete: the paper's float test. Can miss contacts, and can report false ones.
         Moller = "moller",
-        /// Continuous: isolated roots, in f32 and, where that is not enough, in f64 and beyond. Never misses, is never late.
+        /// Continuous: isolated roots, in f32, then in f64 and beyond if that is not enough. Misses
+        /// no contact, and no time is late.
         Certified = "certified",
-        /// The same in f32 alone: leaves more uncertain.
+        /// Continuous: as certified, in f32 alone. Leaves more pairs undecided.
         CertifiedF32 = "certified-f32",
-        /// The same in f64 alone: costs more.
+        /// Continuous: as certified, in f64 alone. Costs more.
         CertifiedF64 = "certified-f64",
         /// Continuous: the paper's cubic in f64. Can miss degenerate motion.
         CubicF64 = "cubic-f64",
-        /// Continuous: the paper's cubic in f32. Can miss, can be late.
+        /// Continuous: the paper's cubic in f32. Can miss contacts, and times can be late.
         CubicF32 = "cubic-f32",
-        /// Near, distance: distances in f64, each within a proven bound. Never misses; 0 is decided by exact signs.
+        /// Near, distance: distances in f64, each within a proven bound. Misses no pair. Exact
+        /// signs decide whether a distance is 0.
         Bounded = "bounded",
     }
 }
@@ -32,39 +35,39 @@ impl Default for Solver {
 }
 
 impl Solver {
-    /// The solver of a kind of query when none is named.
+    /// Returns the default solver of a kind of query.
     pub fn default_for(kind: QueryKind) -> Solver {
         kind.solvers()[0]
     }
-    /// Whether the solver answers that kind of question.
+    /// Returns whether the solver answers a kind of query.
     pub fn answers(self, kind: QueryKind) -> bool {
         kind.solvers().contains(&self)
     }
-    /// Whether its answers are proven: no contact is missed or late.
+    /// Returns whether its answers are proven: no contact is missed, and no time is late.
     pub fn is_certain(self) -> bool {
         matches!(self, Solver::Exact | Solver::Bounded) || self.is_certified()
     }
-    /// Whether it is one of those that take a tolerance and a budget.
+    /// Returns whether it has a tolerance and a limit of iterations.
     pub fn is_certified(self) -> bool {
         matches!(self, Solver::Certified | Solver::CertifiedF32 | Solver::CertifiedF64)
     }
-    /// The promise, in a sentence for the user.
+    /// Returns its guarantee, in a line for the user.
     pub fn promise(self) -> &'static str {
         match self {
             Solver::Exact => "exact: no contact is missed, none is invented",
             Solver::Moller => {
-                "moller: a float test that can miss contacts and invent some; use exact for certainty"
+                "moller: a float test that can miss contacts and report false ones; `exact` cannot"
             }
             Solver::Certified => {
-                "certified: no contact is missed, none is late; what is nearer than the tolerance may be listed as uncertain"
+                "certified: no contact is missed, and no time is late; pairs within the tolerance may be undecided"
             }
             Solver::CertifiedF32 => {
-                "certified-f32: no contact is missed, none is late; what f32 cannot tell is listed as uncertain"
+                "certified-f32: no contact is missed, and no time is late; pairs that f32 cannot decide are undecided"
             }
             Solver::CertifiedF64 => "certified-f64: as certified, in f64 throughout",
             Solver::Bounded => {
-                "bounded: no pair within the distance, or nearer than the one that is told, is missed; distances err by \
-                 less than a proven bound"
+                "bounded: no pair within the distance, or nearer than the reported one, is missed; errors of \
+                 distances have a proven bound"
             }
             Solver::CubicF32 => {
                 "cubic-f32: a float solver that can miss contacts and report them late; docs/internals/accuracy.md has figures"

@@ -1,4 +1,4 @@
-//! Queries whose answers have rows of their own type.
+//! Queries, each with a type of its own for the rows of its answer.
 
 use super::{Continuous, Discrete, Distance, Earliest, Near, Query};
 use crate::contacts::{Contact, FirstContact, NearPair, NearestTriangles, Rows, TrianglePair};
@@ -7,7 +7,7 @@ mod sealed {
     pub trait Sealed {}
 }
 
-/// A query, and the type of its answer's rows: see [`Detector::query`](crate::Detector::query).
+/// A query with the type of its answer's rows: see [`Detector::query`](crate::Detector::query).
 ///
 /// | query | rows |
 /// | --- | --- |
@@ -18,15 +18,17 @@ mod sealed {
 /// | [`Distance`] | `Option<`[`NearestTriangles`]`>` |
 /// | [`Query`] | [`Rows`]: of any of these |
 pub trait TypedQuery: Copy + Into<Query> + sealed::Sealed {
-    /// The rows of its answer.
+    /// Rows of its answer.
     type Rows;
 
-    /// Those of any answer to it; `is_undecided` is whether an earliest time is uncertain.
+    /// Converts the rows of any answer to it. `is_undecided` is whether an earliest time is
+    /// undecided.
     #[doc(hidden)]
     fn rows(rows: Rows, is_undecided: bool) -> Self::Rows;
 }
 
-/// From lines of a query, its rows and the way to them makes the implementations. Rows of another query are empty ones: no query has them.
+/// Makes the implementations. A line has a query, its rows and the conversion to them. Rows of
+/// another kind become empty ones, which no query has.
 macro_rules! rows {
     ($($query:ty => $rows:ty, $pattern:pat => $take:expr, $none:expr, $is_undecided:ident;)+) => {
         $(

@@ -274,7 +274,7 @@ def test_a_submission_without_a_query_or_with_two_of_one_shape_is_refused():
     detector = nm.Detector(body, device=CPU)
     motions = {0: (start.copy(), end.copy())}
     for queries, text in [
-        ([], "without a query"),
+        ([], "at least one query"),
         ([nm.Near(1e-3), nm.Earliest(), nm.Near(2e-3)], "two near queries"),
         (nm.Near(1e-3), r"got Near; use \[query\]"),
         ([nm.Near], "got list"),

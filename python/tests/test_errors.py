@@ -28,15 +28,15 @@ def geometry(query):
 
 
 REFUSED = [
-    (lambda: nm.Near(0), nm.InvalidArgumentError, "a distance of 0"),
-    (lambda: nm.Near(np.nan), nm.InvalidArgumentError, "a distance of NaN"),
+    (lambda: nm.Near(0), nm.InvalidArgumentError, "distance must be finite and above 0, got 0"),
+    (lambda: nm.Near(np.nan), nm.InvalidArgumentError, "distance must be finite and above 0, got NaN"),
     (lambda: nm.Continuous(min_separation=-1), nm.InvalidArgumentError, "min_separation must be finite and at least 0, got -1"),
     (lambda: configure(nm.Continuous(), solver="exact"), nm.InvalidArgumentError, 'has no solver "exact"; choose one of "certified"'),
     (lambda: configure(nm.Earliest(min_separation=1), solver="cubic-f64"), nm.InvalidArgumentError, '"cubic-f64" takes no'),
     (lambda: configure(nm.Discrete(), solver="certified"), nm.InvalidArgumentError, '"moller"'),
     (lambda: configure(nm.Discrete(adjacent=True), solver="moller"), nm.InvalidArgumentError, "adjacent"),
     (lambda: configure(nm.Discrete(), broad_phase="octree"), nm.InvalidArgumentError, '"tree", "tiles"'),
-    (lambda: configure(nm.Distance(), broad_phase="tiles"), nm.InvalidArgumentError, "a distance query by tiles"),
+    (lambda: configure(nm.Distance(), broad_phase="tiles"), nm.InvalidArgumentError, "`tiles` cannot be used with a distance query"),
     (lambda: configure(nm.Near(1), rebuild="often"), nm.InvalidArgumentError, '"auto", "manual"'),
     (lambda: nm.Device("gpu"), nm.InvalidArgumentError, '"cuda"'),
     (lambda: nm.Device("cpu", gpu=0), nm.InvalidArgumentError, "threads for a CPU"),
@@ -62,7 +62,7 @@ REFUSED = [
     (lambda: nm.Earliest(tolerance=np.nan), nm.InvalidArgumentError, "tolerance must be finite and at least 0, got NaN"),
     (lambda: detector().continuous(tolerance=-1), nm.InvalidArgumentError, "tolerance must be finite and at least 0, got -1"),
     (lambda: nm.Continuous(min_separation=np.inf), nm.InvalidArgumentError, "min_separation must be finite and at least 0, got inf"),
-    (lambda: detector().near(0), nm.InvalidArgumentError, "a distance of 0"),
+    (lambda: detector().near(0), nm.InvalidArgumentError, "distance must be finite and above 0, got 0"),
     (lambda: nm.Device(gpu=-1), nm.InvalidArgumentError, "gpu must be an integer from 0"),
     (lambda: nm.Device("cuda", threads=2), nm.InvalidArgumentError, 'backend "cuda" takes no threads'),
     (lambda: nm.Device("cpu", threads=0), nm.InvalidArgumentError, "threads must be an integer from 1 to 1024, got 0"),

@@ -169,7 +169,10 @@ fn what_is_no_separation_is_refused() {
     let with = |separation| asking(QueryKind::Continuous, Solver::Certified, separation);
     for bad in [-1.0, -f64::MIN_POSITIVE, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let error = with(bad).check().expect_err("no length");
-        assert!(error.exit_code() == 2 && error.to_string().contains("a length from 0"), "{error}");
+        assert!(
+            error.exit_code() == 2 && error.to_string().contains("must be finite and at least 0"),
+            "{error}"
+        );
     }
     for good in [0.0, 5e-324, 1e-300, 1e300, f64::MAX] {
         assert!(with(good).check().is_ok());

@@ -48,7 +48,10 @@ fn a_huge_separation_is_refused() {
     let apart = Certified { min_separation: 30.0, ..Certified::default() };
     let body = || vec![scene::soup(6_000, 1, true).expect("a scene")];
     let (_, text, looks) = refused(engine().limited_answers(1 << 26), body(), Continuous::by(apart).into());
-    assert!(text.contains("use a smaller separation or tolerance") && looks < 20_000_000, "{text}: {looks}");
+    assert!(
+        text.contains("use a smaller minimum separation or tolerance") && looks < 20_000_000,
+        "{text}: {looks}"
+    );
 }
 
 #[test]

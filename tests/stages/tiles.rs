@@ -156,7 +156,7 @@ fn tiles_are_chosen_unless_something_of_trees_is() {
     }
     let nearest = Distance::default().with_broad(Broad::Tiles);
     let error = Query::from(nearest).check().expect_err("a distance goes down a tree").to_string();
-    assert!(error.contains("the nearest is sought down a tree"), "{error}");
+    assert!(error.contains("the nearest pair is searched down a tree"), "{error}");
 }
 
 /// Two sheets of 129 by 129 cells, each in a plane at the start; the upper one falls from 1 to `down`, and tilts by `tilt`.

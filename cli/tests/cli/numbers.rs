@@ -6,9 +6,9 @@ use super::{err, refused, run, summary};
 fn numbers_below_zero_reach_the_checks() {
     let scene = ["detect", "--scene", "soup-moving", "--triangles", "20"];
     for (option, said) in [
-        ("--tolerance", "a tolerance that is no length"),
-        ("--min-separation", "a separation that is no length"),
-        ("--near", "a distance of -"),
+        ("--tolerance", "tolerance must be finite and at least 0, got -"),
+        ("--min-separation", "minimum separation must be finite and at least 0, got -"),
+        ("--near", "distance must be finite and above 0, got -"),
     ] {
         for number in ["-3e-5", "-1", "-0.5", "-1e300", "-inf", "-.5"] {
             let joined = format!("{option}={number}");
@@ -22,7 +22,7 @@ fn numbers_below_zero_reach_the_checks() {
     assert!(text.contains("--tolerance must be finite and at least 0, got -0.00003"), "{text}");
     // Before anything is read.
     let text = refused(2, &["detect", "no.ply", "no.ply", "--tolerance", "-3e-5"]);
-    assert!(text.contains("a tolerance that is no length"), "{text}");
+    assert!(text.contains("tolerance must be finite and at least 0, got -0.00003"), "{text}");
     for args in [
         &["detect", "a.ply", "--threads"][..],
         &["detect", "a.ply", "--repeat"],

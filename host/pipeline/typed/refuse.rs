@@ -22,8 +22,8 @@ impl<R: Precision> QueryMemory<R> {
             || self.narrow.ordered().is_some_and(|list| list.has_overflowed(counters))
     }
 
-    /// Grows every list that a submission found too short, by the demand of its schedule: the frame
-    /// that follows may have another one, and need less. Lists that memory has no room for stay
+    /// Grows every list that a submission found too short, by the demand of its schedule. The next
+    /// frame may have another schedule, and need less. Lists that memory has no room for stay
     /// short, and so does everything if the answer is refused: then that frame returns the error.
     pub(super) fn grow_all(&mut self, scene: &mut SceneMemory<R>, counters: &Counts) {
         let is_refused = self.refuse(scene, Step::Traverse, counters).is_err()

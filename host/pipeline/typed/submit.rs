@@ -39,10 +39,10 @@ pub struct Submitted {
 
 /// A pipeline that takes submissions.
 pub trait Submits {
-    /// Allocates a submission of queries that have each run a whole frame, and submits them once. From
-    /// then on the lists do not grow until the next [`Pipeline::frame`](super::Pipeline::frame).
-    /// Returns whether that submission had room for all. If not, its lists have grown, it is not
-    /// prepared, and each query needs another frame.
+    /// Allocates a submission of queries that have each run a whole frame, and submits them once.
+    /// From then on the lists do not grow until the next
+    /// [`Pipeline::frame`](super::Pipeline::frame). Returns whether that submission had room for
+    /// all. If not, its lists have grown, it is not prepared, and each query needs another frame.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] if a walk needs the host, or if the last placing read host
@@ -63,8 +63,8 @@ pub trait Submits {
     fn collect(&mut self, query: usize) -> Result<Option<(Found<'_>, Stages)>, Error>;
     /// Returns the place of a query's answer; `None` if it is not submitted.
     fn answer(&self, query: usize) -> Option<DeviceAnswer>;
-    /// Returns the poses that were read from the caller's memory, at both ends or at the only one,
-    /// of each body; default poses for the others.
+    /// Returns the poses of each body that were read from the caller's memory, at both ends or at
+    /// the only one. Other bodies have default poses.
     ///
     /// # Errors
     /// Device errors.

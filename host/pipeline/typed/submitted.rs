@@ -34,7 +34,7 @@ fn prepared(device: &Device) -> TypedPipeline<f32> {
 }
 
 /// A first submission without room, as on a schedule that needs more than that of the frame
-/// before: lists grow by its demand, and nothing is prepared until a frame has followed.
+/// before. Lists grow by its demand, and nothing is prepared until a frame has followed.
 #[test]
 fn a_preparation_whose_submission_is_short_is_none() {
     let device = engine();

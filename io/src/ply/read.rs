@@ -1,7 +1,7 @@
 //! PLY files to positions and faces.
 //!
-//! This is our own reader. Other crates allocate by the counts in the header, which a damaged file
-//! may have at any size, or lose the number of the bad element.
+//! This is our own reader. Other crates allocate by the counts in the header, and a damaged file
+//! may have counts of any size. Or they lose the number of the bad element.
 
 use super::header::{Element, Encoding, Header, Kind, Property, is_corners};
 use super::source::{Failure, Scalar, Source, Value};

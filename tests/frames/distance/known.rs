@@ -96,7 +96,7 @@ fn no_other_walk_is_taken() {
         assert!(error.contains("has one of its own"), "{error}");
     }
     let error = Query::discrete().with_traversal(Traversal::NearestFirst).check().expect_err("a walk");
-    assert!(error.to_string().contains("a discrete query by the traversal nearest first"), "{error}");
+    assert!(error.to_string().contains("`nearest-first` cannot be used with a discrete query"), "{error}");
     assert!(Query::distance().with_traversal(Traversal::NearestFirst).check().is_ok());
     assert_eq!(Query::distance().traversal_on(true), Traversal::NearestFirst);
 }

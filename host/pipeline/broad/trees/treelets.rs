@@ -1,4 +1,4 @@
-//! What a refit needs beside the tree: the plan of its treelets.
+//! Plan of treelets that a refit uses together with the tree.
 
 use crate::device::{Buffer, Device};
 use crate::error::Error;
@@ -175,7 +175,7 @@ mod tests {
     fn plan(tree: &mut Tree) -> &mut Plan {
         match &mut tree.way {
             RefitPlan::Treelets(plan) => plan,
-            RefitPlan::Levels => panic!("no plan was asked for"),
+            RefitPlan::Levels => panic!("a refit by levels has no plan"),
         }
     }
 
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn all_ways_pass_where_nothing_is_planted() {
+    fn all_ways_pass_without_a_fault() {
         for refit in [Refit::Levels, Refit::Treelets] {
             checked::<Aabb>(refit, |_| ()).expect("sound volumes");
             checked::<Obb>(refit, |_| ()).expect("sound volumes");
