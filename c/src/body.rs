@@ -157,7 +157,7 @@ impl NearmissBody {
             environment: (!everywhere).then_some(self.environment),
             group: self.group,
             mask: self.mask,
-            self_collision: self_collision,
+            self_collision,
         })
     }
 }

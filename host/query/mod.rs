@@ -191,7 +191,7 @@ impl Query {
         }
         if let Some(certified) = shape.certified_mut() {
             let min_separation = if certified.is_apart() { 1.0 } else { 0.0 };
-            *certified = Certified { min_separation: min_separation, ..Certified::by(certified.precision) };
+            *certified = Certified { min_separation, ..Certified::by(certified.precision) };
         }
         shape
     }

@@ -103,16 +103,17 @@ fn told(contacts: &Contacts, triangles: usize) -> Vec<[u64; 3]> {
         Rows::Pairs(pairs) => pairs.iter().map(|p| [0, name(p.triangles[0], p.triangles[1]), 0]).collect(),
         Rows::Earliest(toi) => toi.iter().map(|toi| [toi.to_bits(), 0, 0]).collect(),
         Rows::Contacts(all) => {
-            all.iter().map(|c| [is_edges(c.kind), name(c.a, c.b), c.toi.to_bits()]).collect()
+            all.iter().map(|c| [is_edges(c.kind), name(c.feature_a, c.feature_b), c.toi.to_bits()]).collect()
         }
         Rows::Distance(nearest) => {
             let second = |n: &NearestTriangles| n.triangles[1] + triangles as u32;
             let told = |n: &NearestTriangles| [0, name(n.triangles[0], second(n)), n.distance.to_bits()];
             nearest.iter().map(told).collect()
         }
-        Rows::Near(all) => {
-            all.iter().map(|n| [is_edges(n.kind), name(n.a, n.b), n.squared_distance.to_bits()]).collect()
-        }
+        Rows::Near(all) => all
+            .iter()
+            .map(|n| [is_edges(n.kind), name(n.feature_a, n.feature_b), n.squared_distance.to_bits()])
+            .collect(),
     }
 }
 

@@ -64,7 +64,7 @@ impl From<Verdict> for Said {
     fn from(verdict: Verdict) -> Said {
         match verdict.answer() {
             Answer::Separated => Said::Apart,
-            Answer::Contact { toi, toi_upper } => Said::Certified { toi, toi_upper: toi_upper },
+            Answer::Contact { toi, toi_upper } => Said::Certified { toi, toi_upper },
             Answer::Undecided { toi, .. } => Said::Undecided { toi },
         }
     }
