@@ -20,7 +20,7 @@
 //!     let [t0, t1] = [step, step + 1].map(|k| triangle(0.5 - 0.2 * k as f32));
 //!     detector.update(&[(cloth, Motion::step(&t0, &t1))])?;
 //!     for contact in detector.query(&Continuous::default())?.iter() {
-//!         assert_eq!(contact.bodies, [cloth, table]);
+//!         assert!(contact.bodies.contains(&cloth) && contact.bodies.contains(&table));
 //!         println!(
 //!             "step {step}: {:?} {} and {} at {:.3}",
 //!             contact.kind, contact.feature_a, contact.feature_b, contact.toi

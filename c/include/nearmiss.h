@@ -709,7 +709,7 @@ typedef struct {
     // Not 0 if positions or poses were invalid. Then there is no answer.
     uint64_t invalid;
     // Triangle pairs that share a point at the start of the step. All bits are set if it was not
-    // checked.
+    // checked. Part of the answer: usable only if `short_of_room` and `invalid` are 0.
     uint64_t crossing;
 } NearmissFrameStatus;
 

@@ -17,9 +17,9 @@ pub struct Summary {
     /// Kind of the query.
     pub query: QueryKind,
     /// Name of the bounding volume.
-    pub bv: &'static str,
+    pub bounding_volume: &'static str,
     /// Broad phase.
-    pub broad: Broad,
+    pub broad_phase: Broad,
     /// Refit of trees; `None` for tiles.
     pub refit: Option<Refit>,
     /// Traversal of trees; `None` for tiles.
@@ -47,7 +47,7 @@ pub struct Summary {
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub largest_tolerance: Option<f64>,
     /// Minimum separation of a certified solver, in scene units; 0 for touching.
-    pub separation: Option<f64>,
+    pub min_separation: Option<f64>,
     /// Distance of a near query, in scene units.
     pub distance: Option<f64>,
     /// Nearest triangles of a distance query, their distance and nearest points.

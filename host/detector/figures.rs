@@ -42,8 +42,8 @@ impl Detector {
             vertices: bodies.iter().map(Body::vertex_count).sum(),
             frames: if bodies.iter().any(Body::is_moving) { 2 } else { 1 },
             query: query.kind(),
-            bv: query.bv().name(),
-            broad,
+            bounding_volume: query.bv().name(),
+            broad_phase: broad,
             refit: by_trees.then(|| query.refit_on(self.device.is_gpu())),
             traversal: by_trees.then(|| query.traversal_on(self.device.is_gpu())),
             solver: query.solver(),
@@ -58,7 +58,7 @@ impl Detector {
             largest_tolerance: tolerances
                 .filter(|tolerances| tolerances.least < tolerances.largest)
                 .map(|tolerances| tolerances.largest),
-            separation: query.certified().map(|certified| certified.params().min_separation),
+            min_separation: query.certified().map(|certified| certified.params().min_separation),
             distance: if let Query::Near(near) = query { Some(near.distance) } else { None },
             nearest: contacts.nearest().copied(),
             earliest_toi: contacts.earliest_toi(),

@@ -9,13 +9,13 @@ use std::ops::{Index, IndexMut};
 /// The value of each counter of a frame, indexed by its name.
 ///
 /// ```
-/// use nearmiss::pipeline::counts::Counts;
+/// use nearmiss::research::pipeline::counts::Counts;
 /// use nearmiss_kernels::abi::counter;
 /// assert_eq!(Counts::default()[counter::PAIRS], 0);
 /// ```
 /// A number is no index:
 /// ```compile_fail,E0277
-/// let pairs = nearmiss::pipeline::counts::Counts::default()[0];
+/// let pairs = nearmiss::research::pipeline::counts::Counts::default()[0];
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Counts([u64; counter::COUNT]);

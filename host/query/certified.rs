@@ -13,7 +13,7 @@ use nearmiss_kernels::prim::inclusion::Params;
 /// use nearmiss::research::{Certified, CertifiedPrecision, WithSolver};
 ///
 /// // In f64 alone; features within a thousandth are in contact.
-/// let certified = Certified { separation: 1e-3, ..Certified::by(CertifiedPrecision::F64) };
+/// let certified = Certified { min_separation: 1e-3, ..Certified::by(CertifiedPrecision::F64) };
 /// let query = Continuous::by(certified);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -147,7 +147,7 @@ fn what_cannot_be_divided_is_refused() {
     let text = refused(2, two.to_vec(), Query::distance());
     assert!(text.contains("a distance on several devices"), "{text}");
     let text = refused(2, two.to_vec(), Query::discrete().with_broad(Broad::Tree));
-    assert!(text.contains("by tiles"), "{text}");
+    assert!(text.contains("use the broad phase `tiles`"), "{text}");
     // One device does all that a detector does.
     for query in [Query::distance(), Query::discrete().with_broad(Broad::Tree)] {
         let mut one = OneQueryOnSeveral::new(devices(1), two.to_vec(), query).expect("a detector");

@@ -92,7 +92,7 @@ fn table(summary: &Summary, contacts: &Contacts) -> Vec<(&'static str, String)> 
     ];
     if let Some(tolerance) = summary.tolerance {
         let largest = summary.largest_tolerance.map_or(String::new(), |largest| format!(" to {largest:e}"));
-        let apart = summary.separation.filter(|apart| *apart > 0.0);
+        let apart = summary.min_separation.filter(|apart| *apart > 0.0);
         let apart = apart.map_or(String::new(), |apart| format!(", minimum separation {apart:e}"));
         all.push(("accuracy", format!("tolerance {tolerance:e}{largest}{apart}")));
         let again = stats.escalated_vf_ee.iter().sum();

@@ -24,9 +24,12 @@ fn the_program_tells() {
     let shrinking: serde_json::Value = serde_json::from_str(&shrinking).expect("JSON");
     let boxes = shrinking["caveats"].as_array().expect("a list").iter().find(|r| r["reason"] == "iterations");
     assert!(boxes.is_some_and(|r| r["pairs"].as_u64().is_some_and(|n| n > 0)), "{shrinking}");
-    assert_eq!(all["separation"], 0.0);
+    assert_eq!(all["min_separation"], 0.0);
     let plain = json(&["--discrete"]);
-    assert_eq!((&plain["caveats"], &plain["separation"]), (&serde_json::json!([]), &serde_json::Value::Null));
+    assert_eq!(
+        (&plain["caveats"], &plain["min_separation"]),
+        (&serde_json::json!([]), &serde_json::Value::Null)
+    );
     let text = asked(&[&t0, &t1], &["--max-iterations", "1", "--tolerance", "4e-3"]);
     assert!(text.contains("  caveat: ") && text.contains("raise their number"), "{text}");
     assert!(!run(&["--discrete"]).contains("caveat"));
@@ -38,6 +41,9 @@ fn the_program_tells() {
     assert!(grown.contains("buffers grew") && !grown.contains("caveat"), "{grown}");
     assert!(plain["reruns"] == 0 && !run(&["--discrete", "-v"]).contains("buffers grew"));
     let apart = json(&["--min-separation", "0.01"]);
-    assert!(apart["separation"] == 0.01 && apart["contacts"].as_u64() > all["contacts"].as_u64(), "{apart}");
+    assert!(
+        apart["min_separation"] == 0.01 && apart["contacts"].as_u64() > all["contacts"].as_u64(),
+        "{apart}"
+    );
     assert!(run(&["--min-separation", "0.01", "-v"]).contains("minimum separation 1e-2"));
 }

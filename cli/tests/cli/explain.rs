@@ -122,7 +122,7 @@ fn numbers_and_files_of_queries() {
         (3, "1,1,x,1,1,1,0", "\"x\" is no integer"),
         (5, "1,1,1,0,1,1,0", "\"0\" is a denominator"),
         (6, "1,3,1,1,1,1,0", "\"1/3\" is no double"),
-        (7, "1,1,1,1,1,1,2", "\"2\" is the truth"),
+        (7, "1,1,1,1,1,1,2", "\"2\" is the answer"),
     ] {
         let whole = rows("0");
         let mut lines: Vec<&str> = whole.lines().collect();

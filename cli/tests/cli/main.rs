@@ -80,7 +80,7 @@ const KEYS: [&str; 18] = [
     "vertices",
     "frames",
     "query",
-    "bv",
+    "bounding_volume",
     "refit",
     "traversal",
     "solver",
@@ -311,7 +311,7 @@ fn bad_arguments_are_refused_with_what_is_known() {
             &["detect", "--scene", "grid", "--triangles", "4", "--tolerance", "1"],
             &["--tolerance cannot be used with --solver exact"],
         ),
-        (&["detect", "--scene", "soup-moving", "--triangles", "4", "--tolerance", "NaN"], &["from 0"]),
+        (&["detect", "--scene", "soup-moving", "--triangles", "4", "--tolerance", "NaN"], &["at least 0"]),
     ] {
         let text = refused(2, args);
         for name in known {

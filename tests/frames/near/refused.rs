@@ -11,7 +11,8 @@ fn a_distance_is_a_length_above_nothing() {
     assert_eq!(refused(Query::near(1e300)), None);
     for distance in [0.0, -0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(
-            refused(Query::near(distance)).is_some_and(|text| text.contains("a distance of")),
+            refused(Query::near(distance))
+                .is_some_and(|text| text.contains("distance must be finite and above 0")),
             "{distance}"
         );
     }

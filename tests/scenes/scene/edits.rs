@@ -122,7 +122,7 @@ fn what_a_scene_cannot_do_is_told_and_nothing_has_moved() {
         (&[(cloth, there), (ball, Motion::pose(Pose::default()))], "both ends of the step"),
         (&[(gone, there)], "no body 3"),
         (&[(cloth, there), (cloth, there)], "two inputs for body 0"),
-        (&[(ground, there)], "is static"),
+        (&[(ground, there)], "is fixed"),
         (&[(cloth, Motion::pose(Pose::default()))], "give a deformable body positions"),
         (&[(ball, there)], "give a rigid body poses"),
         (&[(cloth, Motion::positions(&few))], "vertices"),

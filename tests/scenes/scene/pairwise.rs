@@ -29,9 +29,10 @@ pub fn two_by_two(scene: &Scene, query: Query) -> Truth {
             let bodies: Vec<Body> = [i, j].map(|id| alone(&scene.bodies()[id.index()])).to_vec();
             let bodies = if i == j { bodies[..1].to_vec() } else { bodies };
             let found = support::ask(engine(), bodies, query);
+            let of = |bodies: [BodyId; 2]| bodies.map(|body| [i, j][body.index()]);
             pairs.extend(found.pairs().iter().map(|pair| TrianglePair { bodies: [i, j], ..*pair }));
-            contacts.extend(found.contacts().iter().map(|contact| Contact { bodies: [i, j], ..*contact }));
-            near.extend(found.near().iter().map(|pair| NearPair { bodies: [i, j], ..*pair }));
+            contacts.extend(found.contacts().iter().map(|c| Contact { bodies: of(c.bodies), ..*c }));
+            near.extend(found.near().iter().map(|pair| NearPair { bodies: of(pair.bodies), ..*pair }));
         }
     }
     pairs.sort_unstable_by_key(|pair| (pair.bodies[0], pair.triangles[0], pair.bodies[1], pair.triangles[1]));

@@ -34,7 +34,7 @@ const OF_RESEARCH: [&str; 19] = [
 ];
 /// Words that no page has.
 const NOWHERE: [&str; 9] =
-    ["seed's", "the seed ", "anew", "ask", "asked", "asks", "told", "undecided", "caveats"];
+    ["seed's", "the seed ", "anew", "ask", "asked", "asks", "told", "unresolved", "degraded"];
 /// Beginnings that are no verb.
 const NO_VERB: [&str; 16] = [
     "A", "An", "The", "What", "Which", "Where", "Who", "How", "When", "Of", "Only", "With", "Without",
