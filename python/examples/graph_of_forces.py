@@ -15,7 +15,7 @@ folded = np.stack([abs(x - 0.5), y, 0.1 * np.sin(25 * x)], 1)
 def views(detector):
     """The answer as tensors that share the detector's memory."""
     answer = detector.on_device(near)
-    assert len(answer.lists) == 1                          # canonical order: vf rows, then ee rows
+    assert len(answer.lists) == 1                          # vf rows, then ee rows
     rows = {name: torch.from_dlpack(column) for name, column in answer.lists[0].items()}
     return rows, torch.from_dlpack(answer.status), torch.from_dlpack(answer.edges).long()
 
@@ -29,7 +29,7 @@ def corners(rows, status, edges):
     one, zero = torch.ones_like(u), torch.zeros_like(u)
     edge_a, edge_b = edges[first % len(edges)], edges[second % len(edges)]
     a = torch.where(is_face, first[:, None].expand(-1, 2), edge_a)
-    b = torch.where(is_face, triangles[second % len(triangles)], edge_b[:, [0, 1, 1]])
+    b = torch.where(is_face, triangles[second % len(triangles)], torch.cat([edge_b, edge_b[:, 1:]], 1))
     weights = torch.where(is_face, torch.stack([one, zero, u + v - 1, -u, -v], 1),
                           torch.stack([1 - u, u, v - 1, -v, zero], 1))
     return torch.cat([a, b], 1), weights * is_used
