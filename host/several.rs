@@ -2,6 +2,7 @@
 
 mod cuts;
 mod interrupted;
+mod tiles;
 
 use crate::contacts::{Answer, ContactGeometry, Contacts, Located};
 use crate::detector::Detector;
@@ -39,6 +40,8 @@ const UNEVEN: f64 = 1.05;
 pub struct MultiDetector {
     parts: Vec<Detector>,
     divisions: Vec<Division>,
+    /// Builds of each device when all had the same tiles.
+    agreed: Vec<u64>,
     in_turn: bool,
     /// Handle that ends the work of all devices.
     interrupt: Interrupt,
@@ -96,7 +99,7 @@ impl MultiDetector {
             Detector::with_share(device, scene.clone(), Share::WHOLE).map(Detector::of_several)
         };
         let parts = devices.into_iter().map(part).collect::<Result<Vec<_>, _>>()?;
-        Ok(MultiDetector { parts, divisions: Vec::new(), in_turn, interrupt })
+        Ok(MultiDetector { agreed: vec![0; parts.len()], parts, divisions: Vec::new(), in_turn, interrupt })
     }
 
     /// Returns the query as each device runs it: by tiles, which are built on all devices together,
@@ -177,30 +180,6 @@ impl MultiDetector {
         self.divide(at, &query)?;
         let begun = self.each(|detector| detector.begin(&query)).map(drop);
         self.ended(begun)
-    }
-
-    /// As [`Detector::rebuild`].
-    ///
-    /// # Errors
-    /// As there.
-    pub fn rebuild(&mut self) -> Result<(), Error> {
-        let renewed = self.renew();
-        self.ended(renewed)
-    }
-
-    fn renew(&mut self) -> Result<(), Error> {
-        self.each(Detector::rebuild)?;
-        self.divisions.iter_mut().for_each(|division| division.wear = Wear::default());
-        Ok(())
-    }
-
-    /// As [`Detector::builds`], for the device with the most builds.
-    pub fn builds(&self) -> u64 {
-        self.builds_now().into_iter().max().unwrap_or_default()
-    }
-
-    fn builds_now(&self) -> Vec<u64> {
-        self.parts.iter().map(Detector::builds).collect()
     }
 
     /// As [`Detector::add`].
@@ -292,17 +271,7 @@ impl MultiDetector {
             self.renew()?;
         }
         self.divide(at, &query)?;
-        // A device that takes memory again builds its tiles again. Shares need the same tiles on
-        // all.
-        let mut answers = loop {
-            self.each(|detector| detector.begin(&query))?;
-            let builds = self.builds_now();
-            let answers = self.each(|detector| detector.query(&query))?;
-            if self.parts.len() == 1 || self.builds_now() == builds {
-                break answers;
-            }
-            self.renew()?;
-        };
+        let mut answers = self.answers(&query)?;
         let division = &mut self.divisions[at];
         division.ms = answers.iter().map(|answer| answer.stats.stages.total).collect();
         answers.iter_mut().for_each(|answer| answer.query = whole);

@@ -1,0 +1,94 @@
+//! Tiles of several devices. Shares are parts of one order of tiles, so all devices must have built
+//! theirs from the same positions.
+
+use super::MultiDetector;
+use crate::Detector;
+use crate::contacts::Contacts;
+use crate::error::Error;
+use crate::pipeline::wear::Wear;
+use crate::query::Query;
+
+impl MultiDetector {
+    /// As [`Detector::rebuild`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn rebuild(&mut self) -> Result<(), Error> {
+        let renewed = self.renew();
+        self.ended(renewed)
+    }
+
+    /// Builds the tiles of all devices again, from the same positions.
+    pub(super) fn renew(&mut self) -> Result<(), Error> {
+        self.each(Detector::rebuild)?;
+        self.divisions.iter_mut().for_each(|division| division.wear = Wear::default());
+        self.agreed = self.builds_now();
+        Ok(())
+    }
+
+    /// As [`Detector::builds`], for the device with the most builds.
+    pub fn builds(&self) -> u64 {
+        self.builds_now().into_iter().max().unwrap_or_default()
+    }
+
+    fn builds_now(&self) -> Vec<u64> {
+        self.parts.iter().map(Detector::builds).collect()
+    }
+
+    /// Returns each device's answer to its share. A device that lost its memory, by an interrupted
+    /// call or because it needs more, builds its tiles again, and from later positions. Then all
+    /// build, and the query runs again.
+    pub(super) fn answers(&mut self, query: &Query) -> Result<Vec<Contacts>, Error> {
+        loop {
+            if self.agreed != self.builds_now() {
+                // An interrupted call has left some devices with other tiles.
+                self.renew()?;
+            }
+            let before = self.builds_now();
+            let answers = self.each(|detector| {
+                detector.begin(query)?;
+                detector.query(query)
+            })?;
+            let after = self.builds_now();
+            let new = |k: usize| after[k] - before[k];
+            if (1..after.len()).all(|k| new(k) == new(0)) {
+                self.agreed = after;
+                return Ok(answers);
+            }
+            self.agreed.clear();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::Device;
+    use crate::device::emulator::{Emulator, Mode};
+    use crate::samples::soup;
+    use crate::scene::{Motion, Scene};
+
+    /// One device loses its memory after bodies have moved: it builds other tiles than the rest.
+    #[test]
+    fn a_device_that_lost_its_memory_has_all_build_again() {
+        let device = || Device::emulator(Emulator::new(Mode::Engine, Some(1)).expect("a thread"));
+        let query = Query::discrete();
+        let (body, moved) = (soup(2_000, 5, false), soup(2_000, 9, false));
+        let scene = Scene::from(body);
+        let id = scene.ids().next().expect("a body");
+        let mut whole = Detector::new(device(), scene.clone()).expect("a detector");
+        let frame = [(id, Motion::positions(moved.positions_t0()))];
+        let wanted = whole.step(&frame, &query).expect("an answer").rows;
+        for lost in 0..2 {
+            let devices = vec![device(), device()];
+            let mut several = MultiDetector::new(devices, scene.clone()).expect("detectors");
+            several.query(&query).expect("an answer");
+            several.update(&frame).expect("moved");
+            several.interrupt.trigger();
+            several.parts[lost].query(&query).expect_err("interrupted");
+            several.interrupt.clear();
+            assert_eq!(several.query(&query).expect("an answer").rows, wanted, "device {lost}");
+            assert_eq!(several.query(&query).expect("an answer").rows, wanted, "again, {lost}");
+        }
+    }
+}
