@@ -76,7 +76,7 @@ impl Detector {
     }
 
     /// Returns the notes of an answer; bodies are still in the answer's positions. Notes and cost
-    /// are those of [`Detector::summary`].
+    /// are those of [`DetectorExt::summary`](crate::research::DetectorExt::summary).
     pub fn notes(&self, contacts: &Contacts) -> Vec<Note> {
         Note::of(self.scene.bodies(), &contacts.query, contacts)
     }
