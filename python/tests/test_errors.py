@@ -57,7 +57,7 @@ REFUSED = [
     (lambda: nm.Continuous(max_iterations=-1), nm.InvalidArgumentError, "max_iterations must be an integer from 1 to 4294967295, got -1"),
     (lambda: nm.Earliest(max_iterations=0), nm.InvalidArgumentError, "max_iterations must be an integer from 1"),
     (lambda: detector().earliest(max_iterations=0), nm.InvalidArgumentError, "max_iterations must be an integer from 1"),
-    (lambda: configure(nm.Continuous(max_iterations=9), solver="certified-f32"), nm.InvalidArgumentError, "for certified-f32 without a"),
+    (lambda: configure(nm.Continuous(max_iterations=9), solver="certified-f32"), nm.InvalidArgumentError, "certified-f32 without a minimum separation"),
     (lambda: nm.Continuous(tolerance=-1), nm.InvalidArgumentError, "tolerance must be finite and at least 0, got -1"),
     (lambda: nm.Earliest(tolerance=np.nan), nm.InvalidArgumentError, "tolerance must be finite and at least 0, got NaN"),
     (lambda: detector().continuous(tolerance=-1), nm.InvalidArgumentError, "tolerance must be finite and at least 0, got -1"),
