@@ -178,7 +178,11 @@ impl MultiDetector {
         let query = self.divisible(*query)?;
         let at = self.division(&query);
         self.divide(at, &query)?;
+        let before = self.builds_now();
         let begun = self.each(|detector| detector.begin(&query)).map(drop);
+        if begun.is_ok() {
+            self.agree(&before);
+        }
         self.ended(begun)
     }
 

@@ -66,8 +66,18 @@ impl Layouts {
         Ok(layout)
     }
 
-    /// Returns the layout that was made last, if the bodies are unchanged.
-    pub fn last(&self) -> Option<&Arc<Layout>> {
-        self.0.last().map(|(_, layout)| layout)
+    /// Returns any layout of the unchanged bodies, if one was made.
+    pub fn any(&self) -> Option<&Arc<Layout>> {
+        self.0.first().map(|(_, layout)| layout)
+    }
+
+    /// Returns a layout of the unchanged bodies by which something may meet, if one was made.
+    pub fn meeting(&self) -> Option<&Arc<Layout>> {
+        self.0.iter().map(|(_, layout)| layout).find(|layout| layout.may_meet())
+    }
+
+    /// Whether no layout was made, or something may meet by one of them.
+    pub fn may_meet(&self) -> bool {
+        self.0.is_empty() || self.meeting().is_some()
     }
 }

@@ -89,7 +89,7 @@ impl Detector {
 
     /// Number of triangles of bodies that move.
     pub(crate) fn moving_triangles(&self) -> usize {
-        self.engine.layouts.last().map_or(0, |layout| layout.moving_triangles())
+        self.engine.layouts.any().map_or(0, |layout| layout.moving_triangles())
     }
 
     /// Name of its machine.

@@ -71,9 +71,11 @@ impl Detector {
         self.engine.layouts.of(&self.device, &self.scene, query)
     }
 
-    /// Returns any layout of the current bodies.
+    /// Returns a layout of the current bodies by which something may meet, if there is one. A query
+    /// can see less than others: a distance query does not test a body against itself. A discrete
+    /// query sees all that may meet.
     pub(super) fn any_layout(&mut self) -> Result<Arc<Layout>, Error> {
-        match self.engine.layouts.last() {
+        match self.engine.layouts.meeting() {
             Some(layout) => Ok(layout.clone()),
             None => self.layout(&Query::discrete()),
         }

@@ -216,7 +216,7 @@ impl Detector {
     }
 
     fn may_meet(&self) -> bool {
-        self.engine.layouts.last().is_none_or(|layout| layout.may_meet())
+        self.engine.layouts.may_meet()
     }
 }
 

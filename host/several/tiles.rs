@@ -31,7 +31,7 @@ impl MultiDetector {
         self.builds_now().into_iter().max().unwrap_or_default()
     }
 
-    fn builds_now(&self) -> Vec<u64> {
+    pub(super) fn builds_now(&self) -> Vec<u64> {
         self.parts.iter().map(Detector::builds).collect()
     }
 
@@ -40,7 +40,7 @@ impl MultiDetector {
     /// build, and the query runs again.
     pub(super) fn answers(&mut self, query: &Query) -> Result<Vec<Contacts>, Error> {
         loop {
-            if self.agreed != self.builds_now() {
+            if self.parts.len() > 1 && self.agreed != self.builds_now() {
                 // An interrupted call has left some devices with other tiles.
                 self.renew()?;
             }
@@ -49,14 +49,23 @@ impl MultiDetector {
                 detector.begin(query)?;
                 detector.query(query)
             })?;
-            let after = self.builds_now();
-            let new = |k: usize| after[k] - before[k];
-            if (1..after.len()).all(|k| new(k) == new(0)) {
-                self.agreed = after;
+            if self.agree(&before) {
                 return Ok(answers);
             }
-            self.agreed.clear();
         }
+    }
+
+    /// Whether all devices have the same tiles after a call that began with these builds: they had
+    /// before, and each has built as often since.
+    pub(super) fn agree(&mut self, before: &[u64]) -> bool {
+        let after = self.builds_now();
+        let is_alike = (1..after.len()).all(|k| after[k] - before[k] == after[0] - before[0]);
+        if after.len() == 1 || (is_alike && self.agreed == before) {
+            self.agreed = after;
+            return true;
+        }
+        self.agreed.clear();
+        false
     }
 }
 

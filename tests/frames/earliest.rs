@@ -1,5 +1,5 @@
 //! The earliest time is a function of the question: the least time of the continuous query of the
-//! same scene and choices, uncertain pairs included, and whether a contact begins then; by every
+//! same scene and choices, undecided pairs included, and whether a contact begins then; by every
 //! order of tiles, broad phase, volume, walk, number of threads and order of blocks, with a sample
 //! and without one.
 
@@ -98,7 +98,7 @@ fn body(triangles: &[Moved], single: bool) -> Body {
     Body::moving(mesh(0), mesh(1)).expect("two frames")
 }
 
-/// An earliest time, and whether it is that of an uncertain pair alone.
+/// An earliest time, and whether it is that of an undecided pair alone.
 type First = Option<(f64, bool)>;
 
 /// That of all contacts.
@@ -222,7 +222,7 @@ fn hostile_scenes_have_one_earliest_time() {
             same(&format!("scene {scene} of kind {kind}"), &body, (solver, tolerance, separation), parts);
         found[first.map_or(0, |(_, undecided)| 1 + usize::from(undecided))] += 1;
     }
-    println!("nothing, a contact, an uncertain pair: {found:?}");
+    println!("nothing, a contact, an undecided pair: {found:?}");
     assert!(found.iter().all(|n| *n > 100), "{found:?}: of each some");
 }
 
@@ -300,7 +300,7 @@ fn the_comparison_can_fail() {
     }
 }
 
-/// The least of all devices' shares, and whether it is uncertain, is that of the whole.
+/// The least of all devices' shares, and whether it is undecided, is that of the whole.
 #[test]
 fn slices_have_the_same_earliest_time() {
     let mut rng = Rng::new(13);

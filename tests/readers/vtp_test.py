@@ -10,8 +10,8 @@ import unittest
 
 import pyvista
 
-KINDS = ["vf", "fv", "ee"]
-STATUS = ["contact", "certified", "undecided"]
+KINDS = ["vf", "ee"]
+STATUS = ["unverified", "certified", "undecided"]
 
 
 def differences(mesh, rows):
@@ -21,8 +21,8 @@ def differences(mesh, rows):
     found, cells = [], mesh.cell_data
     for at in range(mesh.n_cells):
         row = rows[int(cells["row"][at])]
-        pairs = [(KINDS[cells["kind"][at]], row["kind"]), (list(cells["bodies"][at]), [int(row["body_a"]), int(row["body_b"])])]
-        pairs += [(int(cells[name][at]), int(row[name])) for name in "ab"]
+        pairs = [(KINDS[cells["kind"][at]], row["kind"]), (list(cells["bodies"][at]), [int(row["owner_0"]), int(row["owner_3"])])]
+        pairs += [(int(cells[name][at]), int(row[name])) for name in ["feature_a", "feature_b"]]
         timed = ["toi", "toi_upper"] if "toi" in cells else []
         pairs += [(float(cells[name][at]), float(row[name])) for name in ["distance", *timed]]
         if timed:
@@ -53,7 +53,7 @@ class Vtp(unittest.TestCase):
 
     def test_a_difference_is_noticed(self):
         mesh, rows = self.both("--scene", "soup-moving", "--triangles", "300")
-        for column, value in [("toi", "0.123"), ("a", "9999"), ("x_b", "77"), ("normal_z", "2"), ("status", "none"), ("kind", "tt")]:
+        for column, value in [("toi", "0.123"), ("feature_a", "9999"), ("x_b", "77"), ("normal_z", "2"), ("status", "none"), ("kind", "tt")]:
             planted = [dict(rows[0], **{column: value}), *rows[1:]]
             self.assertEqual(len(differences(mesh, planted)), 2 if column == "normal_z" else 1, column)
         self.assertEqual(len(differences(mesh, rows[1:])), 1)

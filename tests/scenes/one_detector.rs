@@ -304,3 +304,43 @@ fn a_collection_without_a_submission_misses_nothing() {
     assert_eq!(detector.collect(&query).expect("an answer").rows, wanted.rows);
     assert!(!detector.is_prepared() && detector.submit().is_err());
 }
+
+/// A distance query sees nothing of a body alone. Memory that is taken again after it is that of the
+/// other queries: in motion for the first time, in doubles, after an interrupted call, prepared.
+#[test]
+fn a_distance_query_hides_nothing_from_later_ones() {
+    let (near, moving) = (Query::near(1e-3), Query::continuous());
+    let ends = cloth().frames();
+    let body = || Body::deformable(ends[0].clone());
+    let fresh = || Detector::new(engine(), body()).expect("a detector");
+    let [t0, t1] = [0, 1].map(|end| ends[end].positions().clone());
+    let id = fresh().scene().ids().next().expect("a body");
+    let step = [(id, Motion::step(&t0, &t1))];
+    let wanted = fresh().step(&step, &moving).expect("an answer");
+    let wanted_near = fresh().query(&near).expect("an answer");
+    assert!(!wanted.is_empty() && !wanted_near.is_empty());
+    let blind = || {
+        let mut detector = fresh();
+        detector.query(&near).expect("an answer");
+        assert!(detector.query(&Query::distance()).expect("an answer").is_empty());
+        detector
+    };
+    let mut detector = blind();
+    let found = detector.step(&step, &moving).expect("an answer");
+    assert_eq!((&found.rows, found.is_free()), (&wanted.rows, wanted.is_free()));
+    let mut detector = blind();
+    let wide = t0.to_f64();
+    let found = detector.step(&[(id, Motion::positions(&wide))], &near).expect("an answer");
+    assert_eq!(found.rows, wanted_near.rows, "in doubles");
+    let mut detector = blind();
+    detector.interrupter().trigger();
+    detector.query(&near).expect_err("interrupted");
+    assert_eq!(detector.query(&near).expect("an answer").rows, wanted_near.rows, "interrupted");
+    let mut detector = blind();
+    detector.prepare(&[], &[near]).expect("prepared");
+    detector.query(&Query::distance()).expect("an answer");
+    detector.interrupter().trigger();
+    detector.query(&near).expect_err("interrupted");
+    assert!(!detector.is_prepared() && detector.submit().is_err());
+    assert_eq!(detector.collect(&near).expect("an answer").rows, wanted_near.rows, "collected");
+}

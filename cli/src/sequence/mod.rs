@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 
 /// The places of a body, frame by frame. A body with one entry rests.
 enum Track {
-    /// A deformable body, or a static one.
+    /// A deformable body, or a fixed one.
     Positions(Vec<Positions>),
     /// A rigid body.
     Poses(Vec<Pose>),

@@ -42,7 +42,7 @@ fn the_tables_add_up() {
         ] {
             assert!(text.contains(&part), "{part} is not in {text}");
         }
-        for absent in ["no poses", "no static tree", "no filters"] {
+        for absent in ["no poses", "no fixed tree", "no filters"] {
             assert!(!text.contains(absent), "{absent} is in {text}");
         }
     }

@@ -40,7 +40,7 @@ pub fn of(plan: &Plan, layout: &Layout, query: &Query, is_gpu: bool) -> Vec<Left
     };
     put(stage("place"), "placing of vertices", why);
     put(stage("construct"), "construction", "the tree is kept and refitted, until a rebuild");
-    put(fixed.is_empty(), "static tree", "no body is fixed");
+    put(fixed.is_empty(), "fixed tree", "no body is fixed");
     put(buffer(purpose::REST), "poses", "no body is rigid");
     let why = if query.keeps_adjacent() {
         "one body alone: every pair of its triangles is tested"

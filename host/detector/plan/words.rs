@@ -29,7 +29,7 @@ const KERNELS: [(&str, &str); 57] = [
     ("construct_depth", "each node's depth"),
     ("construct_places", "each node's place in its level"),
     ("construct_emit", "nodes in level order"),
-    ("construct_graft", "the static tree after the other, once"),
+    ("construct_graft", "the fixed tree after the other, once"),
     ("sort_pass", "a pass of the radix sort"),
     ("fit_tiles", "a volume for each triangle, tile, and 16 tiles"),
     ("fit_rims", "edges opposite to hubs: a volume for each tile and node"),

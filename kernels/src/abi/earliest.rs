@@ -8,14 +8,14 @@ pub const KEY: u32 = 1;
 /// How many words there are.
 pub const WORDS: u32 = 2;
 
-/// A time in [0, 1] and whether it is that of an uncertain pair, in one number: less for the less
+/// A time in [0, 1] and whether it is that of an undecided pair, in one number: less for the less
 /// time, and of equal times for the contact. Twice the bits of a number up to 1 fit.
 #[inline(always)]
-pub const fn key(toi: f64, uncertain: bool) -> u64 {
-    toi.to_bits() << 1 | uncertain as u64
+pub const fn key(toi: f64, undecided: bool) -> u64 {
+    toi.to_bits() << 1 | undecided as u64
 }
 
-/// The time of a key, and whether it is that of an uncertain pair; `None` while there is none.
+/// The time of a key, and whether it is that of an undecided pair; `None` while there is none.
 pub const fn of_key(key: u64) -> Option<(f64, bool)> {
     if key == u64::MAX { None } else { Some((f64::from_bits(key >> 1), key & 1 == 1)) }
 }

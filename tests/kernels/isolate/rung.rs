@@ -127,7 +127,7 @@ fn climb<const N: usize>(
     }
     match (0..SLICES).map(|i| sliced(double, window, i, p)).find(|slice| *slice != Slice::Apart) {
         None | Some(Slice::Apart) => (Rung::Slices, apart),
-        Some(Slice::CollisionFilter(verdict)) => (Rung::Slices, verdict),
+        Some(Slice::Meets(verdict)) => (Rung::Slices, verdict),
         Some(Slice::Near(from)) => (Rung::Slices, Verdict::undecided(from, p.end, 0, false)),
         Some(Slice::Open(from)) => {
             let verdict = near(double, (from, window.1), 1.0, p);

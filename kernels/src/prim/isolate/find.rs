@@ -15,7 +15,7 @@ pub enum Found<S> {
     /// No contact in the window.
     Apart,
     /// The first contact is in `[from, to]`, certainly.
-    CollisionFilter {
+    Meets {
         /// Not before.
         from: S,
         /// Not after.
@@ -126,7 +126,7 @@ impl<S: Grid, const N: usize> Pair<S, N> {
                     match self.around(t, (high - t).max(t - low)) {
                         Around::Misses => break high,
                         Around::Holds if g.changes_sign(low, high) => {
-                            return Found::CollisionFilter { from: low, to: high };
+                            return Found::Meets { from: low, to: high };
                         }
                         _ => apart = Some(low),
                     }

@@ -80,7 +80,7 @@ pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bo
     let look = CellResult { around: time_tolerance * S::of(AROUND[0]), steps: STEPS[0], again, near };
     let verdict = match pair.isolate(pair.with_margin(window), look) {
         Found::Apart => Some(Verdict::separated(p.end, 0)),
-        Found::CollisionFilter { from, to }
+        Found::Meets { from, to }
             if last || (from > S::ZERO && to - from <= time_tolerance + time_tolerance) =>
         {
             met(from, to, p)
@@ -121,7 +121,7 @@ pub enum Slice {
     /// No contact.
     Apart,
     /// The first contact of the slice.
-    CollisionFilter(Verdict),
+    Meets(Verdict),
     /// Near, and not decided; no contact in the slice before that time.
     Near(f64),
     /// Not decided; no contact in the slice before that time.
@@ -152,9 +152,7 @@ pub fn sliced<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), i: 
     };
     match pair.isolate((from, to), look) {
         Found::Apart => Slice::Apart,
-        Found::CollisionFilter { from, to } => {
-            met(from, to, p).map_or(Slice::Open(from), Slice::CollisionFilter)
-        }
+        Found::Meets { from, to } => met(from, to, p).map_or(Slice::Open(from), Slice::Meets),
         Found::Near { from } => Slice::Near(from),
         Found::Open { .. } if pair.misses_throughout(from, to) => Slice::Apart,
         Found::Open { from, .. } => Slice::Open(from),
@@ -335,7 +333,7 @@ pub fn decided<const N: usize>(
 ) -> Verdict {
     let verdict = match first {
         Slice::Apart => Verdict::separated(p.end, 0),
-        Slice::CollisionFilter(verdict) => verdict,
+        Slice::Meets(verdict) => verdict,
         Slice::Near(from) => Verdict::undecided(from, p.end, 0, false),
         Slice::Open(from) => {
             let verdict = near(pair, (from, window.1), 1.0, p);

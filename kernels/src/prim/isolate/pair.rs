@@ -123,7 +123,7 @@ impl<S: Grid, const N: usize> Pair<S, N> {
 
     /// The time before which no verdict of this pair begins: its window's begin less the margin. A
     /// pair cannot lower the earliest known time if that is not later. That holds for a contact and
-    /// for an uncertain verdict.
+    /// for an undecided verdict.
     #[inline(always)]
     pub fn not_before(&self, window: (S, S)) -> f64 {
         self.with_margin(window).0.wide()

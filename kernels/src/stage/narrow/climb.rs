@@ -12,7 +12,7 @@
 //!          The rest, in its own list.
 //! Before   candidates are complete.
 //! After    {pairs that meet} ⊆ listed ∪ left; no time is late. See [`crate::prim::isolate`].
-//!          earliest = min {(toi, uncertain) of each pair of the continuous query}.
+//!          earliest = min {(toi, undecided) of each pair of the continuous query}.
 //!          A pair is skipped if none of its verdicts could begin before a known time
 //!          ([`Pair::not_before`](isolate::Pair::not_before)).
 //!          So the result is the same in any order.
