@@ -222,7 +222,8 @@ impl MultiDetector {
     /// # Errors
     /// As there.
     pub fn geometry<T: Located>(&mut self, found: &Answer<T>) -> Result<Vec<ContactGeometry>, Error> {
-        let geometry = self.parts[0].geometry(found);
+        let query = self.divisible(found.query)?;
+        let geometry = self.parts[0].geometry_by(found, &query);
         self.ended(geometry)
     }
 

@@ -37,8 +37,12 @@ pub unsafe extern "C" fn nearmiss_detector_prepare(
         let queries = queries.collect::<Result<Vec<Query>, Error>>()?;
         // SAFETY: the caller's promise, twice.
         let motions = unsafe { own.motions(motions, motion_count, |motion| motion.device_motion()) }?;
-        (own.prepared, own.starts) = (Vec::new(), Vec::new());
-        own.detector.prepare(&motions, &queries)?;
+        let prepared = own.detector.prepare(&motions, &queries);
+        // A call that was refused before it changed anything leaves the earlier preparation.
+        if prepared.is_ok() || !own.detector.is_prepared() {
+            (own.prepared, own.starts) = (Vec::new(), Vec::new());
+        }
+        prepared?;
         own.prepared = queries;
         Ok(())
     })

@@ -51,7 +51,7 @@ impl FileFaces {
                     TrianglePair { triangles: if within { [a.min(b), a.max(b)] } else { [a, b] }, ..*pair }
                 };
                 let mut pairs: Vec<_> = pairs.iter().map(faces).collect();
-                pairs.sort_unstable();
+                pairs.sort_unstable_by_key(|pair| [0, 1].map(|k| (pair.bodies[k], pair.triangles[k])));
                 pairs.dedup();
                 Rows::Pairs(pairs)
             }
@@ -61,7 +61,7 @@ impl FileFaces {
                     Kind::Ee => *c,
                 };
                 let mut all: Vec<_> = all.iter().map(faces).collect();
-                let key = |c: &Contact| (c.kind, c.bodies, c.feature_a, c.feature_b);
+                let key = |c: &Contact| (c.kind, (c.bodies[0], c.feature_a), (c.bodies[1], c.feature_b));
                 all.sort_by(|c, d| key(c).cmp(&key(d)).then(c.toi.total_cmp(&d.toi)));
                 all.dedup_by_key(|c| key(c));
                 Rows::Contacts(all)

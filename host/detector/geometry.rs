@@ -6,6 +6,7 @@ use crate::contacts::{Answer, ContactGeometry, Kind, Located};
 use crate::error::Error;
 use crate::memory;
 use crate::pipeline::Layout;
+use crate::query::Query;
 use crate::scene::Body;
 use rayon::prelude::*;
 
@@ -18,6 +19,15 @@ impl Detector {
     /// [`Error::InvalidArgument`] for answers to discrete, earliest and distance queries, and for
     /// contacts of bodies that have changed since. [`Error::OutOfMemory`]; those of the device.
     pub fn geometry<T: Located>(&mut self, found: &Answer<T>) -> Result<Vec<ContactGeometry>, Error> {
+        self.geometry_by(found, &found.query)
+    }
+
+    /// Computes the geometry with the memory of a query that has the same features.
+    pub(crate) fn geometry_by<T: Located>(
+        &mut self,
+        found: &Answer<T>,
+        query: &Query,
+    ) -> Result<Vec<ContactGeometry>, Error> {
         let count = found.rows.count()?;
         if count == 0 {
             return Ok(Vec::new());
@@ -31,10 +41,10 @@ impl Detector {
             (count * row_bytes + vertices * size_of::<[[f64; 3]; 2]>()) as u64,
         )?;
         // After an interrupted call there is no pipeline.
-        let question = self.question(found.query)?;
+        let question = self.question(*query)?;
         let begun = self.begun(&question).map(drop);
         self.ended(begun)?;
-        let layout = self.layout(&found.query)?;
+        let layout = self.layout(query)?;
         let pipeline = self.engine.pipeline.as_ref().ok_or_else(of_others)?;
         let named = found.rows.named();
         let places = pipeline.whereabouts()?;

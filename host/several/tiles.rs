@@ -100,4 +100,18 @@ mod tests {
             assert_eq!(several.query(&query).expect("an answer").rows, wanted, "again, {lost}");
         }
     }
+
+    #[test]
+    fn tiles_are_built_once_and_geometry_is_that_of_one_device() {
+        let device = || Device::emulator(Emulator::new(Mode::Engine, Some(1)).expect("a thread"));
+        let (query, body) = (Query::near(0.02), soup(300, 5, false));
+        let mut one = Detector::new(device(), body.clone()).expect("a detector");
+        let found = one.query(&query).expect("an answer");
+        let wanted = one.geometry(&found).expect("geometry");
+        let mut several = MultiDetector::new(vec![device(), device()], body).expect("detectors");
+        several.begin(&query).expect("begun");
+        let found = several.query(&query).expect("an answer");
+        assert!(wanted.len() > 10 && several.builds() == 1, "{} builds", several.builds());
+        assert_eq!(several.geometry(&found).expect("geometry"), wanted);
+    }
 }

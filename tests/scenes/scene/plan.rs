@@ -109,7 +109,7 @@ fn a_plan_is_what_the_device_counts() {
         assert_eq!(differences(&plan, launches, &device), [""; 0], "{query:?}");
         assert_eq!(plan.stage("place").map(|stage| stage.launches), Some(1));
         assert!(plan.buffer("of no purpose").is_none(), "{query:?}: {:?}", plan.buffers);
-        assert!(plan.left_out.iter().all(|left| left.what != "static tree" && left.what != "poses"));
+        assert!(plan.left_out.iter().all(|left| left.what != "fixed tree" && left.what != "poses"));
     }
 }
 
