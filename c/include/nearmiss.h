@@ -507,7 +507,7 @@ typedef struct {
     const char *bounding_volume;
     // "tiles", "tree".
     const char *broad_phase;
-    // Of trees: "levels", "treelets".
+    // Refit of trees: "levels", "treelets".
     const char *refit;
 } NearmissResearch;
 

@@ -160,7 +160,7 @@ impl NearmissMotion {
     /// The library's motion, in memory of the host or of the device.
     ///
     /// # Safety
-    /// Memory that `kind` names is there, and nobody writes it, as long as the header says.
+    /// Memory that `kind` names exists and is not written, as long as the header says.
     pub(crate) unsafe fn host_motion<'a>(&self) -> Result<HostMotion<'a>, Error> {
         self.check_idle()?;
         if flag(self.on_device, "on_device")? {

@@ -20,7 +20,7 @@ pub struct NearmissResearch {
     pub bounding_volume: *const c_char,
     /// "tiles", "tree".
     pub broad_phase: *const c_char,
-    /// Of trees: "levels", "treelets".
+    /// Refit of trees: "levels", "treelets".
     pub refit: *const c_char,
 }
 

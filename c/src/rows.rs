@@ -90,7 +90,7 @@ impl NearmissRows {
     /// Points in memory of the host.
     ///
     /// # Safety
-    /// Behind a `data` that is not NULL are `count` rows of three numbers, and nobody writes them
+    /// Behind a `data` that is not NULL are `count` rows of three numbers that are not written
     /// while the points live.
     pub(crate) unsafe fn points<'a>(&self, name: &str) -> Result<HostPoints<'a>, Error> {
         let number = self.number(name)?;
@@ -172,7 +172,7 @@ unsafe fn spaced<T: Copy>(from: *const T, count: usize, stride: usize) -> Vec<[T
 /// Items of the caller.
 ///
 /// # Safety
-/// `count` of them are behind a pointer that is not NULL, and nobody writes them while the slice
+/// `count` of them are behind a pointer that is not NULL, and they are not written while the slice
 /// lives.
 pub(crate) unsafe fn items<'a, T>(from: *const T, count: usize, name: &str) -> Result<&'a [T], Error> {
     if count == 0 {

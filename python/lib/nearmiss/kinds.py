@@ -20,7 +20,7 @@ class Status(IntEnum):
     CERTIFIED = 1
     """Proven to meet, first within [toi, toi_upper]."""
     UNDECIDED = 2
-    """Proven to come within the tolerance, not before toi. The features may not meet."""
+    """Neither contact nor separation is proven. A contact is not before toi."""
 
 
 class Closest(IntEnum):
