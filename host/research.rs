@@ -14,15 +14,16 @@
 //!
 //! ```
 //! use nearmiss::{Continuous, Query};
-//! use nearmiss::research::{Bv, ContinuousSolver, Precision, QueryExt, WithSolver};
+//! use nearmiss::research::{BoundingVolume, ContinuousSolver, Precision, QueryExt, WithSolver};
 //!
-//! let query = Continuous::by(ContinuousSolver::Cubic(Precision::F64)).with_bv(Bv::Obb);
+//! let solver = ContinuousSolver::Cubic(Precision::F64);
+//! let query = Continuous::by(solver).with_volume(BoundingVolume::Obb);
 //! assert!(!Query::from(query).solver().is_certain());
 //! ```
 //! A search needs the trait:
 //! ```compile_fail,E0599
-//! # use nearmiss::research::Bv;
-//! let query = nearmiss::Query::continuous().with_bv(Bv::Obb);
+//! # use nearmiss::research::BoundingVolume;
+//! let query = nearmiss::Query::continuous().with_volume(BoundingVolume::Obb);
 //! ```
 //! and so does a solver:
 //! ```compile_fail,E0624
@@ -32,13 +33,13 @@
 
 pub use crate::contacts::summary::Summary;
 pub use crate::contacts::work::{Front, Queues};
-pub use crate::query::bv::{Bv, WithVolume};
 pub use crate::query::certified::{Certified, CertifiedPrecision};
 pub use crate::query::continuous::{ContinuousSolver, Precision};
 pub use crate::query::discrete::TriangleTest;
 pub use crate::query::queues::{Balance, FrontShape, QueueShape, StealShape};
-pub use crate::query::search::{Broad, Refit, Search, Traversal};
+pub use crate::query::search::{BroadPhase, Refit, Search, Traversal};
 pub use crate::query::solver::Solver;
+pub use crate::query::volume::{BoundingVolume, WithVolume};
 
 /// Parts of a frame, for tests that run one alone.
 #[doc(hidden)]
@@ -87,14 +88,14 @@ pub trait QueryExt: TypedQuery {
 
     /// Sets the broad phase.
     #[must_use]
-    fn with_broad(self, broad: Broad) -> Self {
-        self.with_search(Search { broad: Some(broad), ..self.search() })
+    fn with_broad_phase(self, broad: BroadPhase) -> Self {
+        self.with_search(Search { broad_phase: Some(broad), ..self.search() })
     }
 
     /// Sets the bounding volume.
     #[must_use]
-    fn with_bv(self, bv: Bv) -> Self {
-        self.with_search(Search { bv: Some(bv), ..self.search() })
+    fn with_volume(self, volume: BoundingVolume) -> Self {
+        self.with_search(Search { volume: Some(volume), ..self.search() })
     }
 
     /// Sets the refit of trees.
@@ -116,15 +117,15 @@ pub trait QueryExt: TypedQuery {
     }
 
     /// Returns the bounding volume that will be used.
-    fn bv(&self) -> Bv {
+    fn volume(&self) -> BoundingVolume {
         let query: Query = (*self).into();
-        query.bv()
+        query.volume()
     }
 
     /// Returns the broad phase that will be used on a GPU, or on a CPU.
-    fn broad_on(&self, is_gpu: bool) -> Broad {
+    fn broad_phase_on(&self, is_gpu: bool) -> BroadPhase {
         let query: Query = (*self).into();
-        query.broad_on(is_gpu)
+        query.broad_phase_on(is_gpu)
     }
 
     /// Returns the refit of trees that will be used on a GPU, or on a CPU.

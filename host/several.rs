@@ -10,7 +10,7 @@ use crate::device::{Device, Interrupt};
 use crate::error::Error;
 use crate::pipeline::Share;
 use crate::pipeline::wear::Wear;
-use crate::query::{Broad, Query, Rebuild, TypedQuery};
+use crate::query::{BroadPhase, Query, Rebuild, TypedQuery};
 use crate::scene::{Body, BodyId, Motion, Scene};
 use cuts::cuts;
 use std::time::Instant;
@@ -110,8 +110,8 @@ impl MultiDetector {
             return Err(refused("a distance on several devices", "use one device: its walk is not divided"));
         }
         let search = query.search();
-        let by_tiles = several && search.broad.is_none() && !search.is_of_trees();
-        let query = if by_tiles { query.with_broad(Broad::Tiles) } else { query };
+        let by_tiles = several && search.broad_phase.is_none() && !search.is_of_trees();
+        let query = if by_tiles { query.with_broad_phase(BroadPhase::Tiles) } else { query };
         Ok(query.with_rebuild(Rebuild::Manual))
     }
 

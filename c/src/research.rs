@@ -3,7 +3,9 @@
 use crate::error::refused;
 use crate::rows::text;
 use nearmiss::query::{Continuous, Discrete, Earliest, Named};
-use nearmiss::research::{Bv, ContinuousSolver, KindExt, QueryExt, Search, Solver, TriangleTest, WithSolver};
+use nearmiss::research::{
+    BoundingVolume, ContinuousSolver, KindExt, QueryExt, Search, Solver, TriangleTest, WithSolver,
+};
 use nearmiss::{Error, Query};
 use std::ffi::c_char;
 use std::ptr::null;
@@ -52,8 +54,8 @@ impl NearmissResearch {
         // SAFETY: the caller's promise, of all names.
         let (solver, search) = unsafe {
             let search = Search {
-                broad: named(self.broad_phase, "broad_phase")?,
-                bv: named::<Bv>(self.bounding_volume, "bounding_volume")?,
+                broad_phase: named(self.broad_phase, "broad_phase")?,
+                volume: named::<BoundingVolume>(self.bounding_volume, "bounding_volume")?,
                 refit: named(self.refit, "refit")?,
                 ..Search::default()
             };

@@ -15,8 +15,8 @@ use nearmiss::mesh::Body;
 use nearmiss::query::{Continuous, Query};
 use nearmiss::research::pipeline::of_edges;
 use nearmiss::research::{
-    Broad, Bv, Certified, FrontShape, KindExt, QueryExt, QueueShape, Refit, Solver, StealShape, Traversal,
-    WithSolver,
+    BoundingVolume, BroadPhase, Certified, FrontShape, KindExt, QueryExt, QueueShape, Refit, Solver,
+    StealShape, Traversal, WithSolver,
 };
 use nearmiss::words::counted;
 use nearmiss_lab::OneQuery;
@@ -94,8 +94,8 @@ fn choices(query: Query) -> Vec<(&'static str, Query)> {
     }
     vec![
         ("by default", query),
-        ("tiles", query.with_broad(Broad::Tiles)),
-        ("trees", query.with_broad(Broad::Tree)),
+        ("tiles", query.with_broad_phase(BroadPhase::Tiles)),
+        ("trees", query.with_broad_phase(BroadPhase::Tree)),
         ("spilling, by levels", refit(Refit::Levels)),
         ("spilling, by treelets", refit(Refit::Treelets)),
         ("queues", walk(Traversal::Queue(QueueShape::native()))),
@@ -121,14 +121,14 @@ impl Truths {
         Ok(Truths {
             by_leaf: by(query.with_traversal(Traversal::PerLeaf { budget: None }))?,
             by_pair: by(query.with_traversal(Traversal::Queue(QueueShape::native())))?,
-            by_tiles: by(query.with_broad(Broad::Tiles))?,
+            by_tiles: by(query.with_broad_phase(BroadPhase::Tiles))?,
         })
     }
 
     /// The expected results of a query on a machine.
     fn want(&self, query: Query, machine: &Device) -> &Print {
         let by_leaf = |walk| matches!(walk, Traversal::PerLeaf { .. } | Traversal::NearestFirst);
-        if query.broad_on(machine.is_gpu()) == Broad::Tiles {
+        if query.broad_phase_on(machine.is_gpu()) == BroadPhase::Tiles {
             &self.by_tiles
         } else if by_leaf(query.traversal_on(machine.is_gpu())) {
             &self.by_leaf
@@ -236,12 +236,12 @@ impl Bench {
         let Bench { machine, engine, faults } = self;
         for query in [Query::discrete(), Query::continuous(), Query::earliest(), Query::distance()] {
             let kind = query.kind();
-            for bv in Bv::ALL {
-                let query = query.with_bv(bv);
+            for volume in BoundingVolume::ALL {
+                let query = query.with_volume(volume);
                 let on_engine = |query| during("comparing machines", || print_of_steps(engine, scene, query));
                 let truths = Truths::of(query, on_engine)?;
                 if let Some((other, stage)) = truths.disagree() {
-                    faults.push(format!("{name}, {kind}, {}, {other}: {stage}", bv.name()));
+                    faults.push(format!("{name}, {kind}, {}, {other}: {stage}", volume.name()));
                 }
                 for (what, other) in choices(query) {
                     let there = during("comparing machines", || print_of_steps(machine, scene, other))?;
@@ -252,10 +252,10 @@ impl Bench {
                         _ => difference(want, &there),
                     };
                     if let Some(stage) = differs {
-                        faults.push(format!("{name}, {kind}, {}, {what}: {stage}", bv.name()));
+                        faults.push(format!("{name}, {kind}, {}, {what}: {stage}", volume.name()));
                     }
                 }
-                if bv == Bv::Aabb {
+                if volume == BoundingVolume::Aabb {
                     let hash = truths.by_leaf.stages.last().map_or(0, |stage| stage.1);
                     let contacts = counted(truths.by_leaf.contacts as u64, "contact", "contacts");
                     line(format!("{hash:016x} {contacts:>18}  {name}, {kind}"))?;
@@ -270,18 +270,18 @@ impl Bench {
         let Bench { machine, engine, faults } = self;
         for (asked, query) in questions(bodies) {
             let mut hashes = Vec::new();
-            for bv in Bv::ALL {
-                let query = query.with_bv(bv);
+            for volume in BoundingVolume::ALL {
+                let query = query.with_volume(volume);
                 let on_engine = |query| during("comparing machines", || print_of(engine, bodies, query));
                 let truths = Truths::of(query, on_engine)?;
                 if let Some((other, stage)) = truths.disagree() {
-                    faults.push(format!("{name}, {asked}, {}, {other}: {stage}", bv.name()));
+                    faults.push(format!("{name}, {asked}, {}, {other}: {stage}", volume.name()));
                 }
                 for (what, other) in choices(query) {
                     let on_machine = during("comparing machines", || print_of(machine, bodies, other))?;
                     let want = truths.want(other, machine);
                     if let Some(stage) = difference(want, &on_machine) {
-                        faults.push(format!("{name}, {asked}, {}, {what}: {stage}", bv.name()));
+                        faults.push(format!("{name}, {asked}, {}, {what}: {stage}", volume.name()));
                     }
                 }
                 // All prints of a query have the same stages, and contacts are always last.
@@ -307,7 +307,7 @@ impl Bench {
             let bodies = [scene::scene(name, triangles, 3)?];
             for (asked, query) in questions(&bodies) {
                 // The default of the machine, on both.
-                let query = query.with_broad(query.broad_on(machine.is_gpu()));
+                let query = query.with_broad_phase(query.broad_phase_on(machine.is_gpu()));
                 let want = print_of(machine, &bodies, query)?;
                 for order in [Order::Forward, Order::Reverse, Order::Shuffled(3)] {
                     let sanitizer = Device::emulator(Emulator::new(Mode::Sanitizer(order), None)?);

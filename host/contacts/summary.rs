@@ -1,7 +1,7 @@
 //! Summary of a result, for reports.
 
 use super::{Caveat, Front, NearestTriangles, Note, Queues};
-use crate::query::{Broad, QueryKind, Refit, Solver, Traversal};
+use crate::query::{BroadPhase, QueryKind, Refit, Solver, Traversal};
 use crate::stages::Stages;
 
 /// Summary of a result, as the command line prints it in JSON or as text.
@@ -19,7 +19,7 @@ pub struct Summary {
     /// Name of the bounding volume.
     pub bounding_volume: &'static str,
     /// Broad phase.
-    pub broad_phase: Broad,
+    pub broad_phase: BroadPhase,
     /// Refit of trees; `None` for tiles.
     pub refit: Option<Refit>,
     /// Traversal of trees; `None` for tiles.

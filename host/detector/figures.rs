@@ -4,7 +4,7 @@ use super::Detector;
 use crate::contacts::{Contacts, Note, Summary};
 use crate::error::Error;
 use crate::pipeline::Tolerances;
-use crate::query::{Broad, Query};
+use crate::query::{BroadPhase, Query};
 use crate::scene::Body;
 use std::sync::Arc;
 
@@ -35,14 +35,14 @@ impl Detector {
             None => None,
         };
         let bodies = self.scene.bodies();
-        let broad = query.broad_on(self.device.is_gpu());
-        let by_trees = broad == Broad::Tree;
+        let broad = query.broad_phase_on(self.device.is_gpu());
+        let by_trees = broad == BroadPhase::Tree;
         Summary {
             triangles: bodies.iter().map(Body::face_count).sum(),
             vertices: bodies.iter().map(Body::vertex_count).sum(),
             frames: if bodies.iter().any(Body::is_moving) { 2 } else { 1 },
             query: query.kind(),
-            bounding_volume: query.bv().name(),
+            bounding_volume: query.volume().name(),
             broad_phase: broad,
             refit: by_trees.then(|| query.refit_on(self.device.is_gpu())),
             traversal: by_trees.then(|| query.traversal_on(self.device.is_gpu())),

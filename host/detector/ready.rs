@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::pipeline::Layout;
 #[cfg(doc)]
 use crate::query::Rebuild;
-use crate::query::{Broad, Query};
+use crate::query::{BroadPhase, Query};
 use nearmiss_kernels::bvh::tiles::TILE;
 use std::sync::Arc;
 
@@ -142,7 +142,7 @@ impl Detector {
     /// device.
     pub(super) fn slice_finer(&mut self, error: Error, query: &Query) -> Result<(), Error> {
         let tiles = self.layout(query)?.moving_triangles().div_ceil(TILE as usize) as u64;
-        let by_tiles = query.broad_on(self.device.is_gpu()) == Broad::Tiles;
+        let by_tiles = query.broad_phase_on(self.device.is_gpu()) == BroadPhase::Tiles;
         let is_short = matches!(error, Error::OutOfMemory { .. });
         if !is_short || !by_tiles || u64::from(self.portion.slices(query)) >= tiles {
             return Err(error);

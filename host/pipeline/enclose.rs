@@ -149,7 +149,7 @@ impl<R: Precision, V: Kernels> Enclosed<R, V> {
 mod tests {
     use super::*;
     use crate::device::emulator::{Emulator, Mode};
-    use crate::query::{Bv, WithVolume};
+    use crate::query::{BoundingVolume, WithVolume};
     use crate::samples::{sheet, soup};
     use crate::scene::Body;
 
@@ -223,6 +223,6 @@ mod tests {
 
     #[test]
     fn every_node_holds_what_is_below_it() {
-        Bv::ALL.into_iter().for_each(|bv| bv.with(All));
+        BoundingVolume::ALL.into_iter().for_each(|volume| volume.with(All));
     }
 }

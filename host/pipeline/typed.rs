@@ -17,7 +17,7 @@ mod submitted;
 pub use found::{Found, Hits, Listed, in_order};
 pub use submit::{Submits, not_prepared};
 
-use super::broad::{BroadPhase, Share};
+use super::broad::{CandidateSearch, Share};
 use super::list::List;
 use super::placing::{Moved, Whereabouts};
 use super::precision::Precision;
@@ -52,7 +52,7 @@ pub enum Step {
 /// A broad phase, and the choices that queries must have in common to use it.
 pub struct Broad<R: Precision> {
     key: BroadKey,
-    phase: Box<dyn BroadPhase<R>>,
+    phase: Box<dyn CandidateSearch<R>>,
     is_built: bool,
 }
 
@@ -293,7 +293,7 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
 }
 
 impl<R: Precision> TypedPipeline<R> {
-    fn broad(&self, query: usize) -> &dyn BroadPhase<R> {
+    fn broad(&self, query: usize) -> &dyn CandidateSearch<R> {
         &*self.scene.broads[self.queries[query].broad].phase
     }
 }

@@ -3,7 +3,6 @@
 //! None misses a contact. Solvers that can miss one are in [`research`](crate::research), with the
 //! choices of how candidates are found.
 
-pub(crate) mod bv;
 pub(crate) mod certified;
 pub(crate) mod continuous;
 pub(crate) mod discrete;
@@ -15,6 +14,7 @@ pub(crate) mod queues;
 pub(crate) mod search;
 pub(crate) mod solver;
 mod typed;
+pub(crate) mod volume;
 
 pub use continuous::{Continuous, Earliest};
 pub use discrete::Discrete;
@@ -25,13 +25,13 @@ pub use near::Near;
 pub use search::Rebuild;
 pub use typed::TypedQuery;
 
-pub(crate) use bv::{Bv, WithVolume};
 pub(crate) use certified::{Certified, CertifiedPrecision};
 pub(crate) use continuous::{ContinuousSolver, Precision};
 pub(crate) use discrete::TriangleTest;
 pub(crate) use queues::{Balance, FrontShape, QueueShape, StealShape};
-pub(crate) use search::{Broad, Refit, Search, Traversal};
+pub(crate) use search::{BroadPhase, Refit, Search, Traversal};
 pub(crate) use solver::Solver;
+pub(crate) use volume::{BoundingVolume, WithVolume};
 
 use crate::error::Error;
 pub(crate) use kind::ListedRows;
@@ -105,8 +105,8 @@ impl Query {
     }
 
     /// Sets the broad phase.
-    pub(crate) fn with_broad(self, broad: Broad) -> Query {
-        self.with_search(Search { broad: Some(broad), ..self.search() })
+    pub(crate) fn with_broad_phase(self, broad: BroadPhase) -> Query {
+        self.with_search(Search { broad_phase: Some(broad), ..self.search() })
     }
 
     /// Sets when tiles or trees are rebuilt.
@@ -136,13 +136,17 @@ impl Query {
     }
 
     /// Returns the bounding volume that will be used.
-    pub(crate) fn bv(&self) -> Bv {
-        self.search().bv.unwrap_or(Bv::default_for(self.kind()))
+    pub(crate) fn volume(&self) -> BoundingVolume {
+        self.search().volume.unwrap_or(BoundingVolume::default_for(self.kind()))
     }
 
     /// Returns the broad phase that will be used on a GPU, or on a CPU.
-    pub(crate) fn broad_on(&self, is_gpu: bool) -> Broad {
-        if self.kind().takes_traversals() { self.search().broad_on(is_gpu, self.bv()) } else { Broad::Tree }
+    pub(crate) fn broad_phase_on(&self, is_gpu: bool) -> BroadPhase {
+        if self.kind().takes_traversals() {
+            self.search().broad_phase_on(is_gpu, self.volume())
+        } else {
+            BroadPhase::Tree
+        }
     }
 
     /// Returns the refit of trees that will be used on a GPU, or on a CPU.
@@ -154,7 +158,7 @@ impl Query {
     pub(crate) fn traversal_on(&self, is_gpu: bool) -> Traversal {
         match self.search().traversal {
             Some(traversal) => traversal,
-            None if self.kind().takes_traversals() => Traversal::default_for(is_gpu, self.bv()),
+            None if self.kind().takes_traversals() => Traversal::default_for(is_gpu, self.volume()),
             None => Traversal::NearestFirst,
         }
     }
@@ -171,7 +175,7 @@ impl Query {
                 advice: "use another traversal, or leave it out: only distance queries have this one".into(),
             });
         }
-        let by_tiles = self.search().broad == Some(Broad::Tiles);
+        let by_tiles = self.search().broad_phase == Some(BroadPhase::Tiles);
         if !self.kind().takes_traversals() && by_tiles {
             return Err(Error::InvalidArgument {
                 what: format!("broad phase `tiles` cannot be used with a {} query", self.kind()),

@@ -1,15 +1,15 @@
 //! Choices of how a query finds candidates. None changes an answer.
 
-use super::{Bv, FrontShape, QueueShape, StealShape, named};
+use super::{BoundingVolume, FrontShape, QueueShape, StealShape, named};
 use crate::error::Error;
 
 /// Choices of how candidates are found. Every kind of query has them, and none changes an answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Search {
     /// Broad phase; `None` for the fastest of the machine.
-    pub broad: Option<Broad>,
+    pub broad_phase: Option<BroadPhase>,
     /// Bounding volume; `None` for the fastest.
-    pub bv: Option<Bv>,
+    pub volume: Option<BoundingVolume>,
     /// Refit of trees; `None` for the fastest of the machine.
     pub refit: Option<Refit>,
     /// Walk of trees; `None` for the fastest of the machine.
@@ -30,14 +30,15 @@ impl Search {
     }
 
     /// Returns the chosen broad phase, or the fastest of a machine that has the other choices.
-    pub(super) fn broad_on(&self, is_gpu: bool, bv: Bv) -> Broad {
-        let fastest = if self.is_of_trees() { Broad::Tree } else { Broad::default_for(is_gpu, bv) };
-        self.broad.unwrap_or(fastest)
+    pub(super) fn broad_phase_on(&self, is_gpu: bool, volume: BoundingVolume) -> BroadPhase {
+        let fastest =
+            if self.is_of_trees() { BroadPhase::Tree } else { BroadPhase::default_for(is_gpu, volume) };
+        self.broad_phase.unwrap_or(fastest)
     }
 
     /// Checks that queues have possible sizes, and that tiles have no choices of trees.
     pub(super) fn check(&self) -> Result<(), Error> {
-        if self.broad == Some(Broad::Tiles) && self.is_of_trees() {
+        if self.broad_phase == Some(BroadPhase::Tiles) && self.is_of_trees() {
             return Err(Error::InvalidArgument {
                 what: "broad phase `tiles` cannot be used with a refit or a traversal of trees".into(),
                 advice: "use `tree`, or leave out the refit and the traversal: tiles have one of each".into(),
@@ -84,10 +85,10 @@ impl Traversal {
     /// Threads of a CPU balance by themselves. On a GPU the longest walk would delay the frame. So
     /// walks of plain boxes are per leaf and pass the rest on. Other volumes have costlier tests;
     /// pairs of nodes need fewer of them, which pays for the queues.
-    pub fn default_for(is_gpu: bool, bv: Bv) -> Traversal {
+    pub fn default_for(is_gpu: bool, volume: BoundingVolume) -> Traversal {
         if !is_gpu {
             Traversal::PerLeaf { budget: None }
-        } else if bv == Bv::Aabb {
+        } else if volume == BoundingVolume::Aabb {
             Traversal::PerLeaf { budget: Some(Traversal::GPU_BUDGET) }
         } else {
             Traversal::Queue(QueueShape::native())
@@ -108,7 +109,7 @@ impl Traversal {
 
 named! {
     /// Structure in which candidates are found.
-    pub enum Broad {
+    pub enum BroadPhase {
         /// A tree of volumes, as in the paper.
         Tree = "tree",
         /// Tiles of 32 neighbours along a curve. If the volumes of two tiles overlap, all their
@@ -117,11 +118,15 @@ named! {
     }
 }
 
-impl Broad {
+impl BroadPhase {
     /// Returns the fastest of a machine, as measured: see `docs/performance.md`. It is tiles,
     /// except for boxes with axes of their own: merged boxes of 32 triangles are loose.
-    pub fn default_for(_is_gpu: bool, bv: Bv) -> Broad {
-        if matches!(bv, Bv::Aabb | Bv::Linear) { Broad::Tiles } else { Broad::Tree }
+    pub fn default_for(_is_gpu: bool, volume: BoundingVolume) -> BroadPhase {
+        if matches!(volume, BoundingVolume::Aabb | BoundingVolume::Linear) {
+            BroadPhase::Tiles
+        } else {
+            BroadPhase::Tree
+        }
     }
 }
 

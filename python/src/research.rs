@@ -4,7 +4,8 @@ use crate::errors::{choice, named, one_of};
 use crate::query::{Query, as_python, checked, set};
 use nearmiss::query::{Named, Rebuild};
 use nearmiss::research::{
-    Broad, Bv, Certified, ContinuousSolver, KindExt, QueryExt, Search, Solver, TriangleTest, WithSolver,
+    BoundingVolume, BroadPhase, Certified, ContinuousSolver, KindExt, QueryExt, Search, Solver, TriangleTest,
+    WithSolver,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -36,8 +37,8 @@ pub fn configure<'py>(
     let own = solver.map_or(Ok(own), |name| by_solver(own, name))?;
     let before = own.search();
     let search = Search {
-        broad: chosen::<Broad>("broad_phase", broad_phase)?.or(before.broad),
-        bv: chosen::<Bv>("bounding_volume", bounding_volume)?.or(before.bv),
+        broad_phase: chosen::<BroadPhase>("broad_phase", broad_phase)?.or(before.broad_phase),
+        volume: chosen::<BoundingVolume>("bounding_volume", bounding_volume)?.or(before.volume),
         rebuild: rebuild.map(rebuild_of).transpose()?.or(before.rebuild),
         ..before
     };
@@ -130,8 +131,8 @@ pub fn choices<'py>(py: Python<'py>, query: &nearmiss::Query) -> PyResult<Bound<
     let usual = Solver::default_for(query.kind());
     set(&choices, "solver", Some(query.solver()).filter(|&own| own != usual).map(|own| own.name()))?;
     let search = query.search();
-    set(&choices, "broad_phase", search.broad.map(|broad| broad.name()))?;
-    set(&choices, "bounding_volume", search.bv.map(|bv| bv.name()))?;
+    set(&choices, "broad_phase", search.broad_phase.map(|broad| broad.name()))?;
+    set(&choices, "bounding_volume", search.volume.map(|volume| volume.name()))?;
     let rebuild = search.rebuild.and_then(|rebuild| REBUILDS.iter().find(|(_, own)| *own == rebuild));
     set(&choices, "rebuild", rebuild.map(|(name, _)| *name))?;
     Ok(choices)

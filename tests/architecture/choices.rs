@@ -28,7 +28,7 @@ fn serves_volumes() -> Vec<Source> {
 /// The lines that name a volume, or a kernel of it. A default among the choices does not count: it says nothing of the others.
 fn names((volume, kernel): (&str, &str), sources: &[Source]) -> Vec<String> {
     lines(sources, |_, code| {
-        let code = code.replace(&format!("Bv::{volume}"), "");
+        let code = code.replace(&format!("BoundingVolume::{volume}"), "");
         says(&code, volume) || code.contains(kernel)
     })
 }
@@ -56,7 +56,7 @@ fn a_volume_is_a_file_and_an_entry_of_a_list() {
 fn a_second_place_that_knows_a_volume_is_noticed() {
     for line in [
         "type Fit = entry::fit<R, Obb>;",
-        "Bv::Obb => typed::<Obb>(device),",
+        "BoundingVolume::Obb => typed::<Obb>(device),",
         "traverse_leaves_obb: traverse::leaves,",
         "use crate::bv::{Aabb, Obb};",
     ] {
@@ -64,7 +64,10 @@ fn a_second_place_that_knows_a_volume_is_noticed() {
         sources.extend(planted("host/pipeline/mod.rs", line));
         assert_eq!(knows_a_volume(VOLUMES[2], &sources), [format!("host/pipeline/mod.rs:1: {line}")]);
     }
-    let harmless = planted("host/query/bv.rs", "if rests { Bv::Obb } else { Bv::Linear } // not Obb");
+    let harmless = planted(
+        "host/query/volume.rs",
+        "if rests { BoundingVolume::Obb } else { BoundingVolume::Linear } // not Obb",
+    );
     assert_eq!(knows_a_volume(VOLUMES[2], &harmless), NONE);
 }
 

@@ -127,7 +127,7 @@ fn a_second_door_is_noticed() {
             "host/query/continuous.rs",
             "impl $kind {\n    pub fn by(solver: impl Into<ContinuousSolver>) -> $kind {",
         ),
-        ("host/query/mod.rs", "impl Query {\n    pub fn with_broad(self, name: &str) -> Query {"),
+        ("host/query/mod.rs", "impl Query {\n    pub fn with_broad_phase(self, name: &str) -> Query {"),
         ("host/detector/stages.rs", "impl Detector {\n    pub fn repeat_stage(&mut self, times: u32) {"),
     ] {
         assert_eq!(given_away(&laboratory, &planted(file, text)).len(), 1, "{file}: {text}");

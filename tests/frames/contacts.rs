@@ -4,7 +4,7 @@ use nearmiss::Contacts;
 use nearmiss::contacts::{Kind, Status};
 use nearmiss::mesh::{Body, Topology};
 use nearmiss::query::QueryKind;
-use nearmiss::research::{Bv, QueryExt, Solver};
+use nearmiss::research::{BoundingVolume, QueryExt, Solver};
 use support::asked::by;
 use support::truth::frames::{BALLS, CLOTH, Row, Scene, difference, found, later};
 use support::{ask, engine};
@@ -96,8 +96,11 @@ fn starved(scene: &Scene, body: &Body, truth: &[Row]) {
 /// The f64 cubic finds what is listed and no more, among the candidates that there are.
 fn double(scene: &Scene, body: &Body, truth: &[Row]) -> Contacts {
     let answer = asked(body, QueryKind::Continuous, Solver::CubicF64);
-    let boxes =
-        ask(engine(), vec![body.clone()], by(QueryKind::Continuous, Solver::CubicF64).with_bv(Bv::Aabb));
+    let boxes = ask(
+        engine(),
+        vec![body.clone()],
+        by(QueryKind::Continuous, Solver::CubicF64).with_volume(BoundingVolume::Aabb),
+    );
     // The same whatever volumes brought the triangles, and fewer than boxes swept over the whole step overlap in.
     assert_eq!(boxes.stats.candidates_vf_ee, scene.near, "candidates of {}", scene.name);
     assert_eq!(answer.stats.candidates_vf_ee, scene.near, "candidates of {}", scene.name);

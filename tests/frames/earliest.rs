@@ -9,7 +9,7 @@ use nearmiss::contacts::{Caveat, Status};
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::QueryKind;
-use nearmiss::research::{Broad, Bv, QueryExt, Solver};
+use nearmiss::research::{BoundingVolume, BroadPhase, QueryExt, Solver};
 use nearmiss::{Contacts, Device, Query};
 use nearmiss_kernels::abi::earliest;
 use nearmiss_lab::OneQueryOnSeveral;
@@ -122,12 +122,12 @@ fn ways(query: Query, all: bool) -> Vec<(String, Device, Query)> {
     let threads = |n| Device::emulator(Emulator::new(Mode::Engine, Some(n)).expect("threads"));
     let mut ways = Vec::new();
     for n in [1, 2, 4] {
-        ways.push((format!("{n} threads"), threads(n), query.with_broad(Broad::Tiles)));
+        ways.push((format!("{n} threads"), threads(n), query.with_broad_phase(BroadPhase::Tiles)));
     }
-    for bv in Bv::ALL {
-        for broad in [Broad::Tiles, Broad::Tree] {
-            let query = query.with_bv(bv).with_broad(broad);
-            ways.push((format!("{bv:?}, {broad:?}"), engine(), query));
+    for volume in BoundingVolume::ALL {
+        for broad in [BroadPhase::Tiles, BroadPhase::Tree] {
+            let query = query.with_volume(volume).with_broad_phase(broad);
+            ways.push((format!("{volume:?}, {broad:?}"), engine(), query));
         }
     }
     if all {

@@ -4,7 +4,7 @@
 use nearmiss::contacts::{Contact, Status};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::QueryKind;
-use nearmiss::research::{Bv, QueryExt, Solver};
+use nearmiss::research::{BoundingVolume, QueryExt, Solver};
 use nearmiss::{Contacts, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
@@ -75,10 +75,14 @@ fn every_choice_answers_floats_of_any_size() {
                 let found = ask(engine(), vec![large.clone()], query);
                 assert_eq!(fault(&truth, &found), None, "2^{power}, {query:?}");
             }
-            for bv in Bv::ALL {
-                let query = of(motion).with_bv(bv);
+            for volume in BoundingVolume::ALL {
+                let query = of(motion).with_volume(volume);
                 let seen = ask(sanitizer(support::ORDERS[2]), vec![large.clone()], query);
-                assert_eq!(seen.rows, ask(engine(), vec![large.clone()], query).rows, "2^{power}, {bv:?}");
+                assert_eq!(
+                    seen.rows,
+                    ask(engine(), vec![large.clone()], query).rows,
+                    "2^{power}, {volume:?}"
+                );
             }
         }
     }
@@ -109,17 +113,21 @@ fn a_separation_of_any_size() {
     let near = |power: i32| apart(2f64.powi(power - 6));
     let truth = ask(engine(), vec![body.clone()], near(0));
     for power in POWERS {
-        for bv in Bv::ALL {
-            let query = near(power).with_bv(bv);
+        for volume in BoundingVolume::ALL {
+            let query = near(power).with_volume(volume);
             let found = ask(engine(), vec![times(&body, power)], query);
             assert_eq!(fault(&truth, &found), None, "2^{power}, {query:?}");
         }
     }
     // All within a separation that no float holds.
     let all = apart(1e60);
-    let few = |bv| ask(engine(), vec![scene::soup(6, 5, true).expect("a scene")], all.with_bv(bv));
-    let pairs = few(Bv::Aabb).len();
-    assert!(Bv::ALL.into_iter().all(|bv| few(bv).len() == pairs) && pairs == 15 * (9 + 6), "{pairs}");
+    let few =
+        |volume| ask(engine(), vec![scene::soup(6, 5, true).expect("a scene")], all.with_volume(volume));
+    let pairs = few(BoundingVolume::Aabb).len();
+    assert!(
+        BoundingVolume::ALL.into_iter().all(|volume| few(volume).len() == pairs) && pairs == 15 * (9 + 6),
+        "{pairs}"
+    );
 }
 
 /// A detector goes over to doubles when the first frame or body needs them, whichever it is.

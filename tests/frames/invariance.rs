@@ -8,7 +8,7 @@ mod volumes;
 use nearmiss::contacts::{Contact, Kind, Status};
 use nearmiss::mesh::{Body, Mesh, Positions, Topology};
 use nearmiss::query::QueryKind;
-use nearmiss::research::{Bv, QueryExt};
+use nearmiss::research::{BoundingVolume, QueryExt};
 use nearmiss::{Contacts, Query};
 use nearmiss_lab::scene::{self, Rng};
 use std::collections::BTreeMap;
@@ -23,7 +23,7 @@ fn found(bodies: &[Body], motion: QueryKind) -> Contacts {
 /// Pairs of features that may meet, by kind, and triangle pairs of a discrete query, between plain boxes: those are known
 /// by the features and by the leaves alone. Which pairs of features are candidates is also a matter of who owns them, and so of order.
 fn boxed(bodies: &[Body], motion: QueryKind) -> ([u64; 2], u64) {
-    counted(&ask(engine(), bodies.to_vec(), of(motion).with_bv(Bv::Aabb)))
+    counted(&ask(engine(), bodies.to_vec(), of(motion).with_volume(BoundingVolume::Aabb)))
 }
 
 fn counted(contacts: &Contacts) -> ([u64; 2], u64) {

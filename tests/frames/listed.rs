@@ -5,7 +5,7 @@
 use nearmiss::contacts::{Kind, Status};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::Continuous;
-use nearmiss::research::{Bv, Certified, QueryExt, Solver, WithSolver};
+use nearmiss::research::{BoundingVolume, Certified, QueryExt, Solver, WithSolver};
 use nearmiss::{Contacts, Query};
 use nearmiss_io::MeshFile;
 use nearmiss_kernels::prim::cubic::Moving;
@@ -263,6 +263,6 @@ fn the_comparison_can_fail() {
     let mut less = answer.contacts().to_vec();
     less.remove(at);
     assert!(fault(&less, &near, &[]).is_some_and(|fault| fault.contains("is missed")));
-    let finer = ask(engine(), bodies, asking(1e-3, None).with_bv(Bv::Obb));
+    let finer = ask(engine(), bodies, asking(1e-3, None).with_volume(BoundingVolume::Obb));
     assert_ne!(finer.hash(), answer.hash());
 }

@@ -1,7 +1,7 @@
 //! Hard scenes, whose launches and blocks are long: they end soon after a trigger all the same.
 
 use super::threads;
-use nearmiss::research::{Broad, QueryExt};
+use nearmiss::research::{BroadPhase, QueryExt};
 use nearmiss::{Body, Error, Query};
 use nearmiss_lab::OneQuery;
 use std::time::{Duration, Instant};
@@ -63,9 +63,9 @@ fn hard_scenes_end_soon() {
     for (name, body) in &scenes {
         let far = Query::near(100.0);
         for query in [Query::continuous(), Query::earliest(), Query::discrete(), far] {
-            for broad in [Broad::Tiles, Broad::Tree] {
+            for broad in [BroadPhase::Tiles, BroadPhase::Tree] {
                 for after in [20, 300] {
-                    let took = latency(body, query.with_broad(broad), Duration::from_millis(after));
+                    let took = latency(body, query.with_broad_phase(broad), Duration::from_millis(after));
                     println!("{name}, {}, {broad:?}: {took:?} after {after} ms", query.kind());
                     assert!(took < SOON, "{name}, {query:?}: {took:?}");
                 }

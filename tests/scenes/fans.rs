@@ -5,7 +5,7 @@ mod shapes;
 use nearmiss::contacts::TrianglePair;
 use nearmiss::mesh::{Body, Positions};
 use nearmiss::query::{Discrete, Query};
-use nearmiss::research::{Broad, Bv, QueryExt, Search, TriangleTest, WithSolver};
+use nearmiss::research::{BoundingVolume, BroadPhase, QueryExt, Search, TriangleTest, WithSolver};
 use nearmiss::scene::{CollisionFilter, Motion, Scene};
 use nearmiss::{Contacts, Rows};
 use nearmiss_lab::OneQuery;
@@ -55,11 +55,15 @@ const SHAPES: [(&str, Make); 5] = [
 #[test]
 fn tiles_test_as_many_pairs_as_there_are_faces() {
     for (name, shape) in SHAPES {
-        for bv in Bv::ALL {
-            grows_linearly(name, shape, Query::discrete().with_broad(Broad::Tiles).with_bv(bv));
+        for volume in BoundingVolume::ALL {
+            grows_linearly(
+                name,
+                shape,
+                Query::discrete().with_broad_phase(BroadPhase::Tiles).with_volume(volume),
+            );
         }
         for query in keeping() {
-            grows_linearly(name, shape, query.with_broad(Broad::Tiles));
+            grows_linearly(name, shape, query.with_broad_phase(BroadPhase::Tiles));
         }
     }
 }
@@ -68,7 +72,11 @@ fn tiles_test_as_many_pairs_as_there_are_faces() {
 fn so_do_all_walks_of_trees_without_adjacent_pairs() {
     for (name, shape) in SHAPES {
         for traversal in walks() {
-            let search = Search { broad: Some(Broad::Tree), traversal: Some(traversal), ..Search::default() };
+            let search = Search {
+                broad_phase: Some(BroadPhase::Tree),
+                traversal: Some(traversal),
+                ..Search::default()
+            };
             grows_linearly(name, shape, Query::discrete().with_search(search));
         }
     }
@@ -82,8 +90,9 @@ fn a_bicone_has_a_square_of_candidates() {
         let of = |n: u32| Shape::fan(n / 2, height).and_fan_below(-height);
         let [few, many] = [400, 1_600].map(|n| work(of(n).body(), Query::discrete())[1]);
         assert!(many > 10 * few, "{few} to {many}");
-        let [tree, tiles] = [Broad::Tree, Broad::Tiles]
-            .map(|broad| support::ask(engine(), vec![of(1_600).body()], Query::discrete().with_broad(broad)));
+        let [tree, tiles] = [BroadPhase::Tree, BroadPhase::Tiles].map(|broad| {
+            support::ask(engine(), vec![of(1_600).body()], Query::discrete().with_broad_phase(broad))
+        });
         assert_eq!((tree.rows, tree.stats.triangle_pairs), (tiles.rows, tiles.stats.triangle_pairs));
     }
 }
@@ -104,10 +113,12 @@ fn without_adjacent(contacts: &Contacts, scene: &Scene) -> Vec<TrianglePair> {
 /// Detectors of every way to find candidates, of which the first knows no hubs: a tree, of a query that keeps adjacent pairs.
 fn detectors(scene: &Scene, query: Query) -> Vec<OneQuery> {
     let tree = |query: Query, traversal| {
-        query.with_search(Search { broad: Some(Broad::Tree), traversal, ..query.search() })
+        query.with_search(Search { broad_phase: Some(BroadPhase::Tree), traversal, ..query.search() })
     };
     let oracle = if query == Query::discrete() { adjacent() } else { query };
-    let tiles = Bv::ALL.into_iter().map(|bv| query.with_broad(Broad::Tiles).with_bv(bv));
+    let tiles = BoundingVolume::ALL
+        .into_iter()
+        .map(|volume| query.with_broad_phase(BroadPhase::Tiles).with_volume(volume));
     let mut all: Vec<Query> = std::iter::once(tree(oracle, None)).chain(tiles).collect();
     all.extend(walks().into_iter().map(|walk| tree(query, Some(walk))));
     let detector = |query| OneQuery::new(engine(), scene.clone(), query).expect("a detector");
@@ -234,10 +245,11 @@ fn faces_that_are_odd_meet_so_too() {
 fn every_order_of_lanes_gives_the_same() {
     let folded = Shape::folded(150, 3).beside(Shape::folded(100, 4), [0.4, 0.1, 0.05]);
     for query in queries() {
-        for broad in [Broad::Tree, Broad::Tiles] {
+        for broad in [BroadPhase::Tree, BroadPhase::Tiles] {
             let left = |device| {
                 let scene = Scene::from(folded.moving(7, 0.05));
-                let mut detector = OneQuery::new(device, scene, query.with_broad(broad)).expect("a detector");
+                let mut detector =
+                    OneQuery::new(device, scene, query.with_broad_phase(broad)).expect("a detector");
                 let contacts = detector.detect().expect("an answer");
                 detector.check_volumes().expect("sound volumes and hubs");
                 (contacts.hash(), contacts.stats.triangle_pairs, detector.fingerprints().expect("hashes"))

@@ -23,7 +23,7 @@ fn queries() -> Vec<Query> {
         Near::within(0.11).into(),
         Continuous::by(apart).into(),
         Query::distance(),
-        Query::discrete().with_broad(nearmiss::research::Broad::Tree),
+        Query::discrete().with_broad_phase(nearmiss::research::BroadPhase::Tree),
     ]
 }
 

@@ -2,7 +2,7 @@
 
 use nearmiss::mesh::Body;
 use nearmiss::query::{Query, QueryKind};
-use nearmiss::research::{Broad, Bv, QueryExt};
+use nearmiss::research::{BoundingVolume, BroadPhase, QueryExt};
 use nearmiss::scene::{BodyId, CollisionFilter, Motion, Scene};
 use nearmiss::{Contacts, Device};
 use nearmiss_lab::scene::{self, Bodies};
@@ -35,10 +35,10 @@ fn is_the_same(one: &Contacts, several: &Contacts, what: &str) {
 fn a_mesh_has_the_same_answer_on_any_number_of_devices() {
     for body in [scene::draped(5_000), scene::soup(700, 3, true)].map(|body| body.expect("a scene")) {
         for query in queries() {
-            for bv in Bv::ALL {
-                let query = query.with_bv(bv);
+            for volume in BoundingVolume::ALL {
+                let query = query.with_volume(volume);
                 // Several devices take tiles, whatever the volume.
-                let tiles = query.with_broad(Broad::Tiles);
+                let tiles = query.with_broad_phase(BroadPhase::Tiles);
                 let mut one = OneQuery::new(engine(), body.clone(), tiles).expect("a detector");
                 let want = one.detect().expect("an answer");
                 assert!(!want.is_empty(), "{query:?}");
@@ -146,10 +146,10 @@ fn what_cannot_be_divided_is_refused() {
     assert!(text.contains("no device"), "{text}");
     let text = refused(2, two.to_vec(), Query::distance());
     assert!(text.contains("a distance on several devices"), "{text}");
-    let text = refused(2, two.to_vec(), Query::discrete().with_broad(Broad::Tree));
+    let text = refused(2, two.to_vec(), Query::discrete().with_broad_phase(BroadPhase::Tree));
     assert!(text.contains("use the broad phase `tiles`"), "{text}");
     // One device does all that a detector does.
-    for query in [Query::distance(), Query::discrete().with_broad(Broad::Tree)] {
+    for query in [Query::distance(), Query::discrete().with_broad_phase(BroadPhase::Tree)] {
         let mut one = OneQueryOnSeveral::new(devices(1), two.to_vec(), query).expect("a detector");
         let want = support::ask(engine(), two.to_vec(), query);
         assert_eq!(one.detect().expect("an answer").hash(), want.hash());

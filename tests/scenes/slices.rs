@@ -2,7 +2,7 @@
 //! several devices.
 
 use nearmiss::query::{Query, QueryKind};
-use nearmiss::research::{Broad, QueryExt};
+use nearmiss::research::{BroadPhase, QueryExt};
 use nearmiss::scene::CollisionFilter;
 use nearmiss::{Contacts, Device};
 use nearmiss_lab::scene::{self, Bodies};
@@ -115,7 +115,7 @@ fn several_devices_slice_their_shares() {
 #[test]
 fn trees_and_distances_are_not_sliced() {
     let body = scene::draped(2_000).expect("a cloth");
-    for query in [asked::of(QueryKind::Continuous).with_broad(Broad::Tree), Query::distance()] {
+    for query in [asked::of(QueryKind::Continuous).with_broad_phase(BroadPhase::Tree), Query::distance()] {
         let whole = engine();
         let bodies = || {
             vec![

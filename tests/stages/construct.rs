@@ -2,7 +2,7 @@
 
 use nearmiss::Query;
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::research::{Broad, QueryExt};
+use nearmiss::research::{BroadPhase, QueryExt};
 use nearmiss::scene::CollisionFilter;
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
@@ -17,8 +17,9 @@ fn far() -> Body {
 /// Depth of the body's tree, after all volumes are set and everything is checked.
 fn depth(device: nearmiss::Device, body: Body) -> usize {
     let body = body.with_filter(CollisionFilter::without_self_collision());
-    let mut detector = OneQuery::new(device, vec![body, far()], Query::discrete().with_broad(Broad::Tree))
-        .expect("a detector");
+    let mut detector =
+        OneQuery::new(device, vec![body, far()], Query::discrete().with_broad_phase(BroadPhase::Tree))
+            .expect("a detector");
     assert!(detector.detect().expect("an answer").is_empty(), "nothing is far away");
     detector.check_volumes().expect("a sound tree");
     detector.depths()[0]

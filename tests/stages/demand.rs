@@ -2,7 +2,7 @@
 
 use nearmiss::device::Interrupt;
 use nearmiss::query::Continuous;
-use nearmiss::research::{Broad, Certified, QueryExt, WithSolver};
+use nearmiss::research::{BroadPhase, Certified, QueryExt, WithSolver};
 use nearmiss::scene::CollisionFilter;
 use nearmiss::{Body, Device, Error, Query};
 use nearmiss_lab::OneQuery;
@@ -32,7 +32,7 @@ fn near_within_a_huge_distance_is_refused_by_what_is_certain() {
     let body = || vec![scene::soup(20_000, 1, false).expect("a scene")];
     let own = 60_000u64;
     let all = own * 20_000 + own * (own - 1) / 2 - 20_000 * 6;
-    for query in [Query::near(50.0), Query::near(50.0).with_broad(Broad::Tree)] {
+    for query in [Query::near(50.0), Query::near(50.0).with_broad_phase(BroadPhase::Tree)] {
         let device = || engine().with_memory_limit(2 << 30).limited_answers(1 << 30);
         let ([pairs, asked, given], text, looks) = refused(device(), body(), query);
         assert_eq!((pairs, given), (all, 1 << 30), "all are certain within 50");

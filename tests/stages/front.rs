@@ -3,7 +3,7 @@
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::QueryKind;
-use nearmiss::research::{Bv, FrontShape, QueryExt, QueueShape, Search, StatsExt, Traversal};
+use nearmiss::research::{BoundingVolume, FrontShape, QueryExt, QueueShape, Search, StatsExt, Traversal};
 use nearmiss::{Device, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
@@ -27,8 +27,8 @@ fn frames(count: usize) -> Vec<Body> {
         .collect()
 }
 
-fn query(motion: QueryKind, bv: Bv, traversal: Option<Traversal>) -> Query {
-    support::asked::of(motion).with_search(Search { bv: Some(bv), traversal, ..Search::default() })
+fn query(motion: QueryKind, volume: BoundingVolume, traversal: Option<Traversal>) -> Query {
+    support::asked::of(motion).with_search(Search { volume: Some(volume), traversal, ..Search::default() })
 }
 
 /// Answers and candidates of every frame.
@@ -64,17 +64,17 @@ fn every_frame_has_the_answer_that_it_has_without() {
     let other = scene::soup(200, 9, true).expect("a scene");
     for motion in [QueryKind::Discrete, QueryKind::Continuous] {
         for with in [None, Some(&other)] {
-            for bv in Bv::ALL {
-                let want = answers(&device, query(motion, bv, None), &frames, with);
+            for volume in BoundingVolume::ALL {
+                let want = answers(&device, query(motion, volume, None), &frames, with);
                 assert!(want[0] != want[3], "a front that stood still would be noticed");
                 for shape in shapes() {
-                    let asked = query(motion, bv, Some(Traversal::Front(shape)));
+                    let asked = query(motion, volume, Some(Traversal::Front(shape)));
                     let got = answers(&device, asked, &frames, with);
                     for (frame, (want, got)) in want.iter().zip(&got).enumerate() {
-                        assert_eq!(want.0, got.0, "{motion:?}, {bv:?}, frame {frame}, {shape:?}");
+                        assert_eq!(want.0, got.0, "{motion:?}, {volume:?}, frame {frame}, {shape:?}");
                         // Tests with a slack do not nest: candidates may differ by a hair, contacts may not.
-                        if bv == Bv::Aabb {
-                            assert_eq!(want.1, got.1, "{motion:?}, {bv:?}, frame {frame}, {shape:?}");
+                        if volume == BoundingVolume::Aabb {
+                            assert_eq!(want.1, got.1, "{motion:?}, {volume:?}, frame {frame}, {shape:?}");
                         }
                     }
                 }
@@ -87,11 +87,11 @@ fn every_frame_has_the_answer_that_it_has_without() {
 fn under_the_microscope_in_every_order() {
     let frames = frames(4);
     let engine = Device::emulator(Emulator::new(Mode::Engine, None).expect("an engine"));
-    let want = answers(&engine, query(QueryKind::Discrete, Bv::Aabb, None), &frames, None);
+    let want = answers(&engine, query(QueryKind::Discrete, BoundingVolume::Aabb, None), &frames, None);
     for order in [Order::Forward, Order::Reverse, Order::Shuffled(4)] {
         let device = Device::emulator(Emulator::new(Mode::Sanitizer(order), None).expect("a sanitizer"));
         for shape in shapes() {
-            let asked = query(QueryKind::Discrete, Bv::Aabb, Some(Traversal::Front(shape)));
+            let asked = query(QueryKind::Discrete, BoundingVolume::Aabb, Some(Traversal::Front(shape)));
             assert_eq!(answers(&device, asked, &frames, None), want, "{order:?}, {shape:?}");
         }
     }
@@ -103,7 +103,7 @@ fn where_nothing_moves_about_half_of_the_tests_are_saved() {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("an engine"));
     let body = scene::draped(4_000).expect("a scene");
     let shape = FrontShape { prune_every: 0, ..FrontShape::native() };
-    let asked = query(QueryKind::Discrete, Bv::Aabb, Some(Traversal::Front(shape)));
+    let asked = query(QueryKind::Discrete, BoundingVolume::Aabb, Some(Traversal::Front(shape)));
     let mut detector = OneQuery::new(device, vec![body], asked).expect("a detector");
     let first = detector.detect().expect("an answer");
     let second = detector.detect().expect("an answer");
@@ -125,7 +125,7 @@ fn a_front_that_grew_is_pruned_back() {
     let frames = frames(9);
     let lengths = |prune_every: u32| -> Vec<u64> {
         let shape = FrontShape { prune_every, drop: false, ..FrontShape::native() };
-        let asked = query(QueryKind::Discrete, Bv::Aabb, Some(Traversal::Front(shape)));
+        let asked = query(QueryKind::Discrete, BoundingVolume::Aabb, Some(Traversal::Front(shape)));
         let mut detector = OneQuery::new(device.clone(), vec![frames[0].clone()], asked).expect("a detector");
         frames
             .iter()
@@ -146,14 +146,15 @@ fn a_front_that_grew_is_pruned_back() {
 fn a_rebuild_forgets_the_front() {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("an engine"));
     let frames = frames(5);
-    let asked = query(QueryKind::Discrete, Bv::Aabb, Some(Traversal::Front(FrontShape::native())));
+    let asked =
+        query(QueryKind::Discrete, BoundingVolume::Aabb, Some(Traversal::Front(FrontShape::native())));
     let mut detector = OneQuery::new(device.clone(), vec![frames[0].clone()], asked).expect("a detector");
     for frame in &frames {
         detector.move_to(0, frame.clone()).expect("the same mesh");
         detector.rebuild().expect("a tree");
         let contacts = detector.detect().expect("an answer");
         assert_eq!(contacts.stats.front().tests, 0, "nothing was kept");
-        let plain = query(QueryKind::Discrete, Bv::Aabb, None);
+        let plain = query(QueryKind::Discrete, BoundingVolume::Aabb, None);
         assert_eq!(answers(&device, plain, std::slice::from_ref(frame), None)[0].0, contacts.hash());
     }
 }

@@ -2,7 +2,7 @@
 
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Query, QueryKind, Rebuild};
-use nearmiss::research::{Broad, QueryExt};
+use nearmiss::research::{BroadPhase, QueryExt};
 use nearmiss::scene::{CollisionFilter, Motion, Scene};
 use nearmiss_lab::{OneQuery, OneQueryOnSeveral};
 
@@ -38,8 +38,8 @@ fn tiles_and_trees_have_the_same_answer() {
     ];
     for scene in scenes {
         for query in queries() {
-            let truth = ask_scene(engine(), scene.clone(), query.with_broad(Broad::Tree));
-            let query = query.with_broad(Broad::Tiles);
+            let truth = ask_scene(engine(), scene.clone(), query.with_broad_phase(BroadPhase::Tree));
+            let query = query.with_broad_phase(BroadPhase::Tiles);
             let mut detector = OneQuery::new(engine(), scene.clone(), query).expect("a detector");
             let found = detector.detect().expect("an answer");
             detector.check_volumes().expect("each triangle once, in volumes that hold it");
@@ -53,7 +53,7 @@ fn every_machine_has_the_same_order() {
     let pile = scene::Bodies::pile(3, 20, 12).expect("a pile").scene;
     let scenes: [Scene; 2] = [pile, Body::deformable(uneven(1_200, 100)).into()];
     for scene in scenes {
-        let query = Query::discrete().with_broad(Broad::Tiles);
+        let query = Query::discrete().with_broad_phase(BroadPhase::Tiles);
         let left = |device| {
             let mut detector = OneQuery::new(device, scene.clone(), query).expect("a detector");
             detector.detect().expect("an answer");
@@ -80,7 +80,7 @@ fn outsized_triangles_have_tiles_of_their_own() {
     let mut scene = Scene::new();
     scene.add(of(false));
     scene.add(of(true));
-    let query = Query::discrete().with_broad(Broad::Tiles);
+    let query = Query::discrete().with_broad_phase(BroadPhase::Tiles);
     let together = ask_scene(engine(), Body::deformable(mesh.clone()), query);
     let apart = ask_scene(engine(), scene, query);
     let tests = [together.stats.steps, apart.stats.steps];
@@ -109,8 +109,8 @@ fn crowded(step: u64) -> Positions {
 
 #[test]
 fn what_is_worn_is_made_anew_by_itself() {
-    for broad in Broad::ALL {
-        let query = Query::discrete().with_broad(broad);
+    for broad in BroadPhase::ALL {
+        let query = Query::discrete().with_broad_phase(broad);
         let start = scene::soup(3_000, 10, false).expect("a soup");
         let by = |rebuild| query.with_rebuild(rebuild);
         let mut never = OneQuery::new(engine(), start.clone(), by(Rebuild::Manual)).expect("a detector");

@@ -7,7 +7,7 @@ mod words;
 
 use nearmiss::mesh::Body;
 use nearmiss::query::QueryKind;
-use nearmiss::research::{Bv, QueryExt, QueueShape, StealShape, Traversal};
+use nearmiss::research::{BoundingVolume, QueryExt, QueueShape, StealShape, Traversal};
 use nearmiss::{Contacts, Device, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
@@ -105,12 +105,13 @@ fn every_traversal_finds_the_same() {
 #[test]
 fn in_any_volume() {
     for (name, bodies) in scenes() {
-        for bv in [Bv::Linear, Bv::Obb] {
-            let ask =
-                |traversal| found(engine(), &bodies, by(traversal, QueryKind::Continuous).with_bv(bv)).0.2;
+        for volume in [BoundingVolume::Linear, BoundingVolume::Obb] {
+            let ask = |traversal| {
+                found(engine(), &bodies, by(traversal, QueryKind::Continuous).with_volume(volume)).0.2
+            };
             let truth = ask(Traversal::PerLeaf { budget: None });
             for traversal in kinds() {
-                assert_eq!(ask(traversal), truth, "{name}, {bv:?}, {traversal:?}");
+                assert_eq!(ask(traversal), truth, "{name}, {volume:?}, {traversal:?}");
             }
         }
     }

@@ -3,7 +3,7 @@
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::Rebuild;
-use nearmiss::research::{Broad, Bv, QueryExt, Refit};
+use nearmiss::research::{BoundingVolume, BroadPhase, QueryExt, Refit};
 use nearmiss::{Device, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
@@ -49,8 +49,8 @@ fn frame(body: &Body, turn: u32) -> Body {
 type Prints = Vec<(&'static str, u64)>;
 
 /// What construction, fit and refit left after each frame: as built, moved three times, built anew, and moved again.
-fn prints(device: Device, body: &Body, refit: Refit, bv: Bv) -> Vec<Prints> {
-    let query = Query::discrete().with_refit(refit).with_bv(bv).with_rebuild(Rebuild::Manual);
+fn prints(device: Device, body: &Body, refit: Refit, volume: BoundingVolume) -> Vec<Prints> {
+    let query = Query::discrete().with_refit(refit).with_volume(volume).with_rebuild(Rebuild::Manual);
     let mut detector = OneQuery::new(device, from_afar(body), query).expect("a detector");
     let mut all = Vec::new();
     for turn in 0..5 {
@@ -71,17 +71,17 @@ fn prints(device: Device, body: &Body, refit: Refit, bv: Bv) -> Vec<Prints> {
 }
 
 /// Volumes that are merged all, and those of which small nodes are fitted to points.
-const VOLUMES: [Bv; 2] = [Bv::Aabb, Bv::Obb];
+const VOLUMES: [BoundingVolume; 2] = [BoundingVolume::Aabb, BoundingVolume::Obb];
 
 fn agree(device: impl Fn() -> Device, body: &Body) {
     // The largest is for what all volumes share.
     let volumes = if body.face_count() > 100_000 { &VOLUMES[..1] } else { &VOLUMES };
-    for &bv in volumes {
-        let truth = prints(engine(), body, Refit::Levels, bv);
+    for &volume in volumes {
+        let truth = prints(engine(), body, Refit::Levels, volume);
         for refit in WAYS {
             let device = device();
-            let what = format!("{bv:?}, {refit:?}, {} triangles, {}", body.face_count(), device.name());
-            assert_eq!(prints(device, body, refit, bv), truth, "{what}");
+            let what = format!("{volume:?}, {refit:?}, {} triangles, {}", body.face_count(), device.name());
+            assert_eq!(prints(device, body, refit, volume), truth, "{what}");
         }
     }
 }
@@ -109,8 +109,10 @@ fn machines_cannot_be_told_apart() {
         deep(12),
     ];
     let seeds = 0..3u64;
-    for (body, bv) in bodies.iter().flat_map(|body| [(body, Bv::Aabb), (body, Bv::Obb)]) {
-        let truth = prints(engine(), body, Refit::Levels, bv);
+    for (body, volume) in
+        bodies.iter().flat_map(|body| [(body, BoundingVolume::Aabb), (body, BoundingVolume::Obb)])
+    {
+        let truth = prints(engine(), body, Refit::Levels, volume);
         let interleaved = seeds.clone().map(|seed| {
             let order = Mode::Sanitizer(ORDERS[seed as usize]);
             let emulator = Emulator::new(order, None).expect("threads").with_interleave(seed);
@@ -119,8 +121,9 @@ fn machines_cannot_be_told_apart() {
         });
         for device in machines().into_iter().chain(interleaved) {
             for refit in WAYS {
-                let what = format!("{bv:?}, {refit:?}, {} triangles, {}", body.face_count(), device.name());
-                assert_eq!(prints(device.clone(), body, refit, bv), truth, "{what}");
+                let what =
+                    format!("{volume:?}, {refit:?}, {} triangles, {}", body.face_count(), device.name());
+                assert_eq!(prints(device.clone(), body, refit, volume), truth, "{what}");
             }
         }
     }
@@ -143,7 +146,7 @@ fn a_stale_volume_is_noticed() {
     // A frame in which nothing moved: what is left in memory is the last one's.
     assert_eq!(stages(&of(1), &of(2)), ["fit", "refit"]);
     // One triangle whose volume is another frame's.
-    let query = Query::default().with_broad(Broad::Tree).with_rebuild(Rebuild::Manual);
+    let query = Query::default().with_broad_phase(BroadPhase::Tree).with_rebuild(Rebuild::Manual);
     let mut detector = OneQuery::new(engine(), from_afar(&body), query).expect("a detector");
     let mut points = frame(&body, 1).positions_t0().to_f64();
     points[300..303].copy_from_slice(&frame(&body, 2).positions_t0().to_f64()[300..303]);

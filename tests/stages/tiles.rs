@@ -2,7 +2,7 @@
 
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Distance, Query, QueryKind};
-use nearmiss::research::{Broad, Bv, QueryExt, Refit, Search, Traversal};
+use nearmiss::research::{BoundingVolume, BroadPhase, QueryExt, Refit, Search, Traversal};
 use nearmiss::scene::Scene;
 use nearmiss::{Contacts, Device};
 use nearmiss_lab::OneQuery;
@@ -11,7 +11,8 @@ use support::{ORDERS, ask_scene, asked, engine, machines, sanitizer};
 
 /// Answers by trees and by tiles.
 fn both(device: &Device, scene: &Scene, query: Query) -> [Contacts; 2] {
-    [Broad::Tree, Broad::Tiles].map(|broad| ask_scene(device.clone(), scene.clone(), query.with_broad(broad)))
+    [BroadPhase::Tree, BroadPhase::Tiles]
+        .map(|broad| ask_scene(device.clone(), scene.clone(), query.with_broad_phase(broad)))
 }
 
 /// Both answers are one, and where the volumes nest the candidates are as many.
@@ -41,8 +42,12 @@ fn one_mesh_has_the_same_candidates_and_contacts() {
     for (body, distance) in bodies {
         let scene = Scene::from(body);
         for query in queries(distance) {
-            for bv in Bv::ALL {
-                let contacts = agree(&scene, query.with_bv(bv), matches!(bv, Bv::Aabb | Bv::Linear));
+            for volume in BoundingVolume::ALL {
+                let contacts = agree(
+                    &scene,
+                    query.with_volume(volume),
+                    matches!(volume, BoundingVolume::Aabb | BoundingVolume::Linear),
+                );
                 assert!(contacts.stats.triangle_pairs > 0, "{query:?}");
             }
         }
@@ -54,7 +59,7 @@ fn one_mesh_has_the_same_candidates_and_contacts() {
 fn known_pairs_are_found_at_every_size() {
     for cells in [1, 2, 3, 4, 5, 15, 16, 17, 40, 520] {
         let body = scene::grid(cells).expect("a grid");
-        let query = Query::discrete().with_broad(Broad::Tiles);
+        let query = Query::discrete().with_broad_phase(BroadPhase::Tiles);
         let contacts = support::ask(engine(), vec![body], query);
         assert_eq!(contacts.len() as u64, scene::grid_pairs(cells), "{cells}");
     }
@@ -69,7 +74,7 @@ fn known_pairs_are_found_at_every_size() {
 #[test]
 fn a_list_of_pairs_of_tiles_that_is_too_short_grows() {
     let n = 2_500;
-    let query = Query::discrete().with_broad(Broad::Tiles);
+    let query = Query::discrete().with_broad_phase(BroadPhase::Tiles);
     let contacts = support::ask(engine(), vec![scene::identical(n).expect("equal triangles")], query);
     assert!(contacts.stats.reruns > 0);
     assert_eq!(contacts.len(), n * (n - 1) / 2);
@@ -85,8 +90,9 @@ fn many_bodies_have_the_same_contacts_step_by_step() {
     ];
     for pile in piles {
         for query in [Query::discrete(), Query::continuous(), Query::near(0.02)] {
-            let mut detectors = [Broad::Tree, Broad::Tiles].map(|broad| {
-                OneQuery::new(engine(), pile.scene.clone(), query.with_broad(broad)).expect("a detector")
+            let mut detectors = [BroadPhase::Tree, BroadPhase::Tiles].map(|broad| {
+                OneQuery::new(engine(), pile.scene.clone(), query.with_broad_phase(broad))
+                    .expect("a detector")
             });
             for step in 0..3 {
                 let moves = pile.step(step);
@@ -111,8 +117,8 @@ fn many_bodies_have_the_same_contacts_step_by_step() {
 #[test]
 fn every_machine_leaves_the_same_behind() {
     let pile = scene::Bodies::pile(6, 6, 4).expect("a pile");
-    for query in [Query::discrete(), Query::continuous().with_bv(Bv::Obb)] {
-        let query = query.with_broad(Broad::Tiles);
+    for query in [Query::discrete(), Query::continuous().with_volume(BoundingVolume::Obb)] {
+        let query = query.with_broad_phase(BroadPhase::Tiles);
         let left = |device: Device| {
             let mut detector = OneQuery::new(device, pile.scene.clone(), query).expect("a detector");
             let moves = pile.step(1);
@@ -131,7 +137,7 @@ fn every_machine_leaves_the_same_behind() {
 #[test]
 fn blocks_side_by_side_find_the_same() {
     let body = scene::soup(300, 9, false).expect("a soup");
-    let query = Query::discrete().with_broad(Broad::Tiles);
+    let query = Query::discrete().with_broad_phase(BroadPhase::Tiles);
     let truth = support::ask(engine(), vec![body.clone()], query);
     for order in ORDERS {
         assert_eq!(support::ask(sanitizer(order), vec![body.clone()], query).rows, truth.rows);
@@ -141,20 +147,21 @@ fn blocks_side_by_side_find_the_same() {
 #[test]
 fn tiles_are_chosen_unless_something_of_trees_is() {
     let by = |search| Query::discrete().with_search(search);
-    assert_eq!(Query::discrete().broad_on(true), Broad::Tiles);
-    assert_eq!(Query::discrete().broad_on(false), Broad::Tiles);
-    assert_eq!(Query::discrete().with_bv(Bv::Obb).broad_on(true), Broad::Tree);
-    assert_eq!(Query::distance().broad_on(true), Broad::Tree);
+    assert_eq!(Query::discrete().broad_phase_on(true), BroadPhase::Tiles);
+    assert_eq!(Query::discrete().broad_phase_on(false), BroadPhase::Tiles);
+    assert_eq!(Query::discrete().with_volume(BoundingVolume::Obb).broad_phase_on(true), BroadPhase::Tree);
+    assert_eq!(Query::distance().broad_phase_on(true), BroadPhase::Tree);
     let levels = Search { refit: Some(Refit::Levels), ..Search::default() };
     let walk = Search { traversal: Some(Traversal::PerLeaf { budget: None }), ..Search::default() };
     for search in [levels, walk] {
-        assert_eq!(by(search).broad_on(true), Broad::Tree);
-        let error =
-            by(Search { broad: Some(Broad::Tiles), ..search }).check().expect_err("tiles have one way");
+        assert_eq!(by(search).broad_phase_on(true), BroadPhase::Tree);
+        let error = by(Search { broad_phase: Some(BroadPhase::Tiles), ..search })
+            .check()
+            .expect_err("tiles have one way");
         assert!(error.to_string().contains("leave out the refit and the traversal"), "{error}");
-        by(Search { broad: Some(Broad::Tree), ..search }).check().expect("trees have many");
+        by(Search { broad_phase: Some(BroadPhase::Tree), ..search }).check().expect("trees have many");
     }
-    let nearest = Distance::default().with_broad(Broad::Tiles);
+    let nearest = Distance::default().with_broad_phase(BroadPhase::Tiles);
     let error = Query::from(nearest).check().expect_err("a distance goes down a tree").to_string();
     assert!(error.contains("the nearest pair is searched down a tree"), "{error}");
 }

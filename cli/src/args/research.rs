@@ -5,7 +5,9 @@ use super::number::{some, whole};
 use clap::{Args, ValueEnum};
 use nearmiss::Stage;
 use nearmiss::query::Rebuild;
-use nearmiss::research::{Broad, Bv, FrontShape, QueueShape, Refit, Solver, StealShape, Traversal};
+use nearmiss::research::{
+    BoundingVolume, BroadPhase, FrontShape, QueueShape, Refit, Solver, StealShape, Traversal,
+};
 
 /// Walks of a tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -42,11 +44,11 @@ pub struct ResearchArgs {
     /// Choose the broad phase [default: fastest of this machine]
     ///
     /// A refit or a traversal chooses the tree.
-    #[arg(long, hide_short_help = true, value_name = "NAME", value_parser = choice::<Broad>())]
-    pub broad_phase: Option<Broad>,
+    #[arg(long, hide_short_help = true, value_name = "NAME", value_parser = choice::<BroadPhase>())]
+    pub broad_phase: Option<BroadPhase>,
     /// Choose the bounding volume [default: fastest of the query]
-    #[arg(long, hide_short_help = true, value_name = "NAME", value_parser = choice::<Bv>())]
-    pub bounding_volume: Option<Bv>,
+    #[arg(long, hide_short_help = true, value_name = "NAME", value_parser = choice::<BoundingVolume>())]
+    pub bounding_volume: Option<BoundingVolume>,
     /// Choose the refit of a tree [default: fastest of this machine]
     #[arg(long, hide_short_help = true, value_name = "NAME", value_parser = choice::<Refit>())]
     pub refit: Option<Refit>,

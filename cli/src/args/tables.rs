@@ -4,7 +4,7 @@ use super::number::{some, whole};
 use super::{MachineArgs, RESEARCH, ReportArgs, choice, help};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
-use nearmiss::research::{Bv, QueueShape, Traversal};
+use nearmiss::research::{BoundingVolume, QueueShape, Traversal};
 use nearmiss_lab::tables::SCENES;
 use std::path::PathBuf;
 
@@ -84,9 +84,9 @@ pub struct TablesArgs {
     /// Choose the bounding volumes
     ///
     /// The paper has aabb and obb.
-    #[arg(long, num_args = 1.., value_name = "NAME", value_parser = choice::<Bv>(),
-        default_values_t = [Bv::Aabb, Bv::Obb])]
-    pub bounding_volume: Vec<Bv>,
+    #[arg(long, num_args = 1.., value_name = "NAME", value_parser = choice::<BoundingVolume>(),
+        default_values_t = [BoundingVolume::Aabb, BoundingVolume::Obb])]
+    pub bounding_volume: Vec<BoundingVolume>,
     /// Walk by work queues of these sizes [default: the fastest walk]
     ///
     /// Queues are balanced between launches, and trees are refitted level by level, as in the paper.

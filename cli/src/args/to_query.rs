@@ -73,8 +73,8 @@ impl DetectArgs {
     fn search(&self) -> Search {
         let research = &self.research;
         Search {
-            broad: research.broad_phase,
-            bv: research.bounding_volume,
+            broad_phase: research.broad_phase,
+            volume: research.bounding_volume,
             refit: research.refit,
             traversal: research.walk(),
             // Every so many frames, and at no other.

@@ -6,7 +6,7 @@ use crate::progress::during;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::query::Query;
-use nearmiss::research::{Bv, QueryExt};
+use nearmiss::research::{BoundingVolume, QueryExt};
 use nearmiss_lab::scene::Bodies;
 use nearmiss_lab::tables::{self, Figures, Frames, Paper, Way};
 use std::process::ExitCode;
@@ -89,8 +89,8 @@ fn profile(args: &TablesArgs) -> &'static str {
 }
 
 /// The chosen volumes, each once.
-fn volumes(args: &TablesArgs) -> Vec<Bv> {
-    Bv::ALL.into_iter().filter(|bv| args.bounding_volume.contains(bv)).collect()
+fn volumes(args: &TablesArgs) -> Vec<BoundingVolume> {
+    BoundingVolume::ALL.into_iter().filter(|volume| args.bounding_volume.contains(volume)).collect()
 }
 
 /// Measures one scene.
@@ -102,9 +102,12 @@ fn scene(args: &TablesArgs, device: &Device, frames: &Frames, figures: &mut Figu
     if wanted(Table::Build) {
         // Every construction is by way of axis-aligned boxes.
         let mut built = Vec::new();
-        for bv in Bv::ALL.into_iter().filter(|bv| *bv == Bv::Aabb || args.bounding_volume.contains(bv)) {
-            let trees = || tables::build(device, frames, bv, walk);
-            built.push(during(format!("{name}: trees in {}", bv.name()), trees)?);
+        for volume in BoundingVolume::ALL
+            .into_iter()
+            .filter(|volume| *volume == BoundingVolume::Aabb || args.bounding_volume.contains(volume))
+        {
+            let trees = || tables::build(device, frames, volume, walk);
+            built.push(during(format!("{name}: trees in {}", volume.name()), trees)?);
         }
         figures.figure_6_12.extend(tables::figure_612(&paper, frames.meshes.len(), &built));
     }

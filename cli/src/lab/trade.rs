@@ -9,7 +9,7 @@ use nearmiss::error::Error;
 use nearmiss::memory;
 use nearmiss::mesh::Body;
 use nearmiss::query::{Query, QueryKind};
-use nearmiss::research::{Bv, Certified, QueryExt};
+use nearmiss::research::{BoundingVolume, Certified, QueryExt};
 use nearmiss_lab::accuracy::{
     Choice, Extent, Input, Scene, Trade, built_in, degeneracies, funnel, list, offsets, query_files, refit,
     scales, triangles,
@@ -113,10 +113,11 @@ fn generated(args: &TradeArgs, device: &Device, all: &mut Trade) -> Result<(), E
         let still = known(device, &format!("{name}, still"), Body::deformable(mesh), None)?;
         scene(args, device, &still, all)?;
         scene(args, device, &known(device, name, step, None)?, all)?;
-        for bv in [Bv::Aabb, Query::continuous().bv()] {
+        for volume in [BoundingVolume::Aabb, Query::continuous().volume()] {
             let name = format!("{name}, {} triangles", frames.triangles());
-            let rows =
-                during(format!("{name}: refitting {}", bv.name()), || refit(device, &name, &frames, bv))?;
+            let rows = during(format!("{name}: refitting {}", volume.name()), || {
+                refit(device, &name, &frames, volume)
+            })?;
             all.refit.extend(rows);
         }
     }
@@ -151,9 +152,9 @@ fn scene(args: &TradeArgs, device: &Device, scene: &Scene, all: &mut Trade) -> R
     }
     let tolerance = asked.certified().map(|_| Certified::TOLERANCE);
     let choice = Choice { asked, tolerance };
-    for bv in Bv::ALL.into_iter().filter(|bv| *bv != asked.bv()) {
-        let row = || scene.row(device, choice, Some(bv), args.repeat);
-        all.choices.push(during(format!("{}: {}", scene.name, bv.name()), row)?);
+    for volume in BoundingVolume::ALL.into_iter().filter(|volume| *volume != asked.volume()) {
+        let row = || scene.row(device, choice, Some(volume), args.repeat);
+        all.choices.push(during(format!("{}: {}", scene.name, volume.name()), row)?);
     }
     if kind == QueryKind::Continuous {
         let rows =

@@ -12,7 +12,7 @@ use super::list::GrowableOutput;
 use super::precision::Precision;
 use crate::device::Device;
 use crate::error::Error;
-use crate::query::{Broad, Query, WithVolume};
+use crate::query::{BroadPhase, Query, WithVolume};
 use nearmiss_kernels::abi::{BodyRecord, Counters, Output, Pair, Positions, Span, TraverseFlags};
 use nearmiss_kernels::bvh::Violation;
 use nearmiss_kernels::entry::Kernels;
@@ -92,7 +92,7 @@ pub enum Which {
 }
 
 /// A broad phase of a scene: moving bodies against each other and against static ones.
-pub trait BroadPhase<R: Precision>: Send {
+pub trait CandidateSearch<R: Precision>: Send {
     /// Builds the structure from the positions at t = 0. The static part is built only the first
     /// time. Volumes are not fitted yet.
     ///
@@ -129,8 +129,8 @@ pub trait BroadPhase<R: Precision>: Send {
     /// Device errors.
     fn traverse(&mut self, given: &BroadContext<R>, candidates: &Candidates) -> Result<(), Error>;
 
-    /// Returns its own lists. One that turns out too short grows, and [`BroadPhase::traverse`] runs
-    /// again.
+    /// Returns its own lists. One that turns out too short grows, and
+    /// [`CandidateSearch::traverse`] runs again.
     fn lists(&mut self) -> Vec<&mut dyn GrowableOutput>;
 
     /// Returns whether it can list a sample, and leave out pairs that only meet later.
@@ -222,8 +222,8 @@ pub fn broad_phase<R: Precision>(
     layout: &Layout,
     query: &Query,
     margin: f32,
-) -> Result<Box<dyn BroadPhase<R>>, Error> {
-    query.bv().with(New { device, layout, query, margin, precision: std::marker::PhantomData })
+) -> Result<Box<dyn CandidateSearch<R>>, Error> {
+    query.volume().with(New { device, layout, query, margin, precision: std::marker::PhantomData })
 }
 
 /// Arguments for the constructors of broad phases.
@@ -236,13 +236,13 @@ struct New<'a, R> {
 }
 
 impl<R: Precision> WithVolume for New<'_, R> {
-    type Out = Result<Box<dyn BroadPhase<R>>, Error>;
+    type Out = Result<Box<dyn CandidateSearch<R>>, Error>;
 
     fn with<V: Kernels>(self) -> Self::Out {
         let New { device, layout, query, margin, .. } = self;
-        Ok(match query.broad_on(device.is_gpu()) {
-            Broad::Tree => Box::new(Trees::<R, V>::new(device, layout, query, margin)?),
-            Broad::Tiles => Box::new(Tiles::<V>::new(device, layout, margin)?),
+        Ok(match query.broad_phase_on(device.is_gpu()) {
+            BroadPhase::Tree => Box::new(Trees::<R, V>::new(device, layout, query, margin)?),
+            BroadPhase::Tiles => Box::new(Tiles::<V>::new(device, layout, margin)?),
         })
     }
 }

@@ -4,7 +4,7 @@
 use super::*;
 use crate::device::emulator::{Emulator, Mode};
 use crate::pipeline::Layout;
-use crate::query::{Bv, Certified, CertifiedPrecision, Continuous, Refit};
+use crate::query::{BoundingVolume, Certified, CertifiedPrecision, Continuous, Refit};
 use crate::research::QueryExt;
 use crate::samples::soup;
 use crate::scene::Scene;
@@ -32,8 +32,10 @@ fn volumes_without_the_separation_lose_pairs() {
     let query = Query::from(Continuous::by(certified));
     let all = certain(query.with_refit(Refit::Levels), true);
     for refit in [Refit::Levels, Refit::Treelets] {
-        let counts = |grows| Bv::ALL.map(|bv| certain(query.with_bv(bv).with_refit(refit), grows));
-        assert_eq!(counts(true), [all; Bv::ALL.len()], "{refit:?}");
+        let counts = |grows| {
+            BoundingVolume::ALL.map(|volume| certain(query.with_volume(volume).with_refit(refit), grows))
+        };
+        assert_eq!(counts(true), [all; BoundingVolume::ALL.len()], "{refit:?}");
         assert!(counts(false).iter().all(|count| *count < all), "{refit:?}: {:?} of {all}", counts(false));
     }
 }

@@ -6,13 +6,13 @@ use super::query::QueryMemory;
 use crate::device::{Buffer, Device, Event};
 use crate::error::Error;
 use crate::pipeline::Layout;
-use crate::pipeline::broad::{BroadContext, BroadPhase, broad_phase, growth};
+use crate::pipeline::broad::{BroadContext, CandidateSearch, broad_phase, growth};
 use crate::pipeline::list::List;
 use crate::pipeline::narrow::Features;
 use crate::pipeline::placing::Placing;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::purpose;
-use crate::query::{self, Bv, Query};
+use crate::query::{self, BoundingVolume, Query};
 use crate::scene::Body;
 use nearmiss_kernels::abi::{BodyRecord, Pair, counter};
 
@@ -20,7 +20,7 @@ use nearmiss_kernels::abi::{BodyRecord, Pair, counter};
 #[derive(Clone, Copy, PartialEq)]
 pub enum BroadKey {
     /// Tiles: volume, order, and, in a scene with hubs, whether pairs round a hub are candidates.
-    Tiles(Bv, Option<bool>),
+    Tiles(BoundingVolume, Option<bool>),
     /// Trees, whose walks keep state: all of a query except its numbers.
     Trees(Query),
 }
@@ -28,12 +28,12 @@ pub enum BroadKey {
 impl BroadKey {
     /// Returns the key of a query of that shape.
     pub fn of(shape: &Query, layout: &Layout, is_gpu: bool) -> BroadKey {
-        if shape.broad_on(is_gpu) == query::Broad::Tree {
+        if shape.broad_phase_on(is_gpu) == query::BroadPhase::Tree {
             return BroadKey::Trees(*shape);
         }
         let has_hubs = !(layout.hubs.is_empty() && layout.rims.is_empty());
         let adjacent = has_hubs.then(|| shape.keeps_adjacent());
-        BroadKey::Tiles(shape.bv(), adjacent)
+        BroadKey::Tiles(shape.volume(), adjacent)
     }
 }
 
@@ -107,7 +107,7 @@ impl<R: Precision> SceneMemory<R> {
     pub fn broadly<T>(
         &mut self,
         query: &QueryMemory<R>,
-        what: impl FnOnce(&mut dyn BroadPhase<R>, &BroadContext<R>, &Layout) -> Result<T, Error>,
+        what: impl FnOnce(&mut dyn CandidateSearch<R>, &BroadContext<R>, &Layout) -> Result<T, Error>,
     ) -> Result<T, Error> {
         let given = BroadContext {
             device: &self.device,

@@ -3,14 +3,14 @@
 use super::row::Row;
 use crate::tables::digits;
 use nearmiss::query::QueryKind;
-use nearmiss::research::{Bv, Certified, Solver};
+use nearmiss::research::{BoundingVolume, Certified, Solver};
 
 /// Returns whether a row is of the default choice, with the positions as given.
 fn is_default(row: &Row) -> bool {
     let motion = if row.tolerance_edges.is_some() { QueryKind::Continuous } else { QueryKind::Discrete };
     row.solver == Solver::default_for(motion)
         && row.tolerance_edges.is_none_or(|edges| edges == Certified::TOLERANCE)
-        && row.bv.is_none_or(|bv| bv == Bv::default_for(motion).name())
+        && row.bv.is_none_or(|bv| bv == BoundingVolume::default_for(motion).name())
         && row.precision != "f32 cast"
 }
 

@@ -6,7 +6,7 @@ use crate::tables::{Frames, Printed, digits};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::query::Query;
-use nearmiss::research::{Bv, QueryExt};
+use nearmiss::research::{BoundingVolume, QueryExt};
 use serde::Serialize;
 
 /// A frame of an animation.
@@ -45,9 +45,14 @@ pub struct RefitRow {
 ///
 /// # Errors
 /// Device errors.
-pub fn refit(device: &Device, name: &str, frames: &Frames, bv: Bv) -> Result<Vec<RefitRow>, Error> {
+pub fn refit(
+    device: &Device,
+    name: &str,
+    frames: &Frames,
+    volume: BoundingVolume,
+) -> Result<Vec<RefitRow>, Error> {
     let bodies = frames.bodies(true)?;
-    let query = Query::continuous().with_bv(bv);
+    let query = Query::continuous().with_volume(volume);
     let mut old = OneQuery::new(device.clone(), vec![bodies[0].clone()], query)?;
     let mut fresh = OneQuery::new(device.clone(), vec![bodies[0].clone()], query)?;
     let (mut rows, mut since, mut lost) = (Vec::new(), 0, 0.0);
@@ -65,7 +70,7 @@ pub fn refit(device: &Device, name: &str, frames: &Frames, bv: Bv) -> Result<Vec
         let rebuild = lost > b.stats.stages.construct;
         rows.push(RefitRow {
             input: name.into(),
-            bv: bv.name(),
+            bv: volume.name(),
             frame: since,
             refitted_pairs: a.stats.triangle_pairs,
             fresh_pairs: b.stats.triangle_pairs,

@@ -14,7 +14,9 @@ use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Positions, Topology};
 use nearmiss::query::{Continuous, Query, QueryKind};
 use nearmiss::research::pipeline::mean_side;
-use nearmiss::research::{Bv, Certified, CertifiedPrecision, QueryExt, Search, Solver, WithSolver};
+use nearmiss::research::{
+    BoundingVolume, Certified, CertifiedPrecision, QueryExt, Search, Solver, WithSolver,
+};
 use rayon::prelude::*;
 
 /// A body whose contacts are known.
@@ -104,9 +106,15 @@ impl Scene {
     ///
     /// # Errors
     /// Device errors.
-    pub fn row(&self, device: &Device, choice: Choice, bv: Option<Bv>, repeats: u32) -> Result<Row, Error> {
+    pub fn row(
+        &self,
+        device: &Device,
+        choice: Choice,
+        volume: Option<BoundingVolume>,
+        repeats: u32,
+    ) -> Result<Row, Error> {
         let query = choice.query(self.edge);
-        let query = query.with_search(Search { bv, ..query.search() });
+        let query = query.with_search(Search { volume, ..query.search() });
         let tolerance = query.certified().and_then(|certified| certified.tolerance);
         let held = device.bytes().0;
         let mut detector = OneQuery::new(device.clone(), vec![self.body.clone()], query)?;
@@ -131,7 +139,7 @@ impl Scene {
             tolerance_edges: choice.tolerance,
             tolerance,
             precision: if self.body.positions_t0().is_f64() { "f64" } else { "f32" },
-            bv: Some(query.bv().name()),
+            bv: Some(query.volume().name()),
             escalated: contacts.stats.escalated_vf_ee.iter().sum(),
             ns: Some(narrow * 1e6 / contacts.stats.candidates.max(1) as f64),
             ms: Some(total),

@@ -9,7 +9,7 @@ use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Continuous, Earliest, Query};
-use nearmiss::research::{Broad, Certified, QueryExt, WithSolver};
+use nearmiss::research::{BroadPhase, Certified, QueryExt, WithSolver};
 use nearmiss::scene::CollisionFilter;
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::tri_tri::meets_exactly;
@@ -84,15 +84,15 @@ fn against_one(device: &Device, n: usize, report: &mut Report) -> Result<(), Err
 fn equal(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
     let all = n * (n - 1) / 2;
     let levels = n.next_power_of_two().trailing_zeros() as usize + 1;
-    for broad in [Broad::Tree, Broad::Tiles] {
-        let query = Query::discrete().with_broad(broad);
+    for broad in [BroadPhase::Tree, BroadPhase::Tiles] {
+        let query = Query::discrete().with_broad_phase(broad);
         let mut detector = OneQuery::new(device.clone(), vec![scene::identical(n)?], query)?;
         let found = detector.detect()?;
         detector.check_volumes()?;
         report.asked += 1;
         report.missed += (all - found.len().min(all)) as u64;
         let depths = detector.depths();
-        if found.len() != all || (broad == Broad::Tree && depths != [levels]) {
+        if found.len() != all || (broad == BroadPhase::Tree && depths != [levels]) {
             report.fail(|| {
                 format!("X43 {n} equal: got {} pairs, expected {all}; depth {depths:?}", found.len())
             });
@@ -135,7 +135,7 @@ fn ties(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
 fn beyond_32_bits(device: &Device, report: &mut Report) -> Result<(), Error> {
     const N: usize = 92_683;
     let needed = (N * (N - 1) / 2 * size_of::<nearmiss_kernels::abi::Pair>()) as u64;
-    let by_trees = Query::discrete().with_broad(Broad::Tree);
+    let by_trees = Query::discrete().with_broad_phase(BroadPhase::Tree);
     let mut detector = OneQuery::new(device.clone(), vec![scene::identical(N)?], by_trees)?;
     report.asked += 1;
     match detector.detect() {
@@ -144,7 +144,7 @@ fn beyond_32_bits(device: &Device, report: &mut Report) -> Result<(), Error> {
         Ok(found) => report.fail(|| format!("X45: {} pairs were found", found.len())),
     }
     drop(detector);
-    let by_tiles = Query::discrete().with_broad(Broad::Tiles);
+    let by_tiles = Query::discrete().with_broad_phase(BroadPhase::Tiles);
     let found = OneQuery::new(device.clone(), vec![slanted(N)?], by_tiles)?.detect()?;
     report.asked += 1;
     report.missed += N.saturating_sub(found.len()) as u64;

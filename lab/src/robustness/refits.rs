@@ -9,7 +9,7 @@ use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Continuous, Query};
 use nearmiss::research::pipeline::enclose::Enclosed;
-use nearmiss::research::{Bv, Certified, QueryExt, Refit, WithSolver, WithVolume};
+use nearmiss::research::{BoundingVolume, Certified, QueryExt, Refit, WithSolver, WithVolume};
 use nearmiss_kernels::entry::Kernels;
 use nearmiss_kernels::math::Vec3;
 
@@ -105,14 +105,14 @@ fn holds<V: Kernels>(
 pub fn ask_refits(device: &Device, frames: u32) -> Result<Report, Error> {
     let mut report = Report::new("refits");
     let all = &mut report;
-    for (bv, refit) in Bv::ALL.into_iter().zip(WAYS.into_iter().cycle()) {
-        bv.with(Holds { device, frames, refit, report: all, name: bv.name() })?;
+    for (volume, refit) in BoundingVolume::ALL.into_iter().zip(WAYS.into_iter().cycle()) {
+        volume.with(Holds { device, frames, refit, report: all, name: volume.name() })?;
     }
-    for (bv, refit) in Bv::ALL.into_iter().zip(WAYS.into_iter().cycle()) {
+    for (volume, refit) in BoundingVolume::ALL.into_iter().zip(WAYS.into_iter().cycle()) {
         // The default tolerance depends on the detector's first positions.
         let continuous = Continuous::by(Certified { tolerance: Some(1e-5), ..Certified::default() });
         for query in [Query::discrete(), continuous.into()] {
-            let query = query.with_bv(bv).with_refit(refit);
+            let query = query.with_volume(volume).with_refit(refit);
             let mut detector = OneQuery::new(device.clone(), vec![body(0)?], query)?;
             for k in (APART..=frames).step_by(APART as usize) {
                 // `holds` refits the frames in between; this tree jumps.
@@ -126,7 +126,7 @@ pub fn ask_refits(device: &Device, frames: u32) -> Result<Report, Error> {
                         let (was, is) = (found.len(), fresh.len());
                         format!(
                             "X57 {}, {}, frame {k}: got {was} contacts, {is} by a new tree",
-                            bv.name(),
+                            volume.name(),
                             query.kind()
                         )
                     });

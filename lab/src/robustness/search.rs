@@ -8,7 +8,7 @@ use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
 use nearmiss::query::{Query, QueryKind};
-use nearmiss::research::{Bv, QueryExt};
+use nearmiss::research::{BoundingVolume, QueryExt};
 
 fn found(device: &Device, bodies: Vec<Body>, query: Query) -> Result<Contacts, Error> {
     let mut detector = OneQuery::new(device.clone(), bodies, query)?;
@@ -32,14 +32,14 @@ pub fn ask_scenes(device: &Device, scenes: &[Scene]) -> Result<Report, Error> {
                 continue;
             }
         };
-        for bv in Bv::ALL {
-            let found = found(device, bodies.clone(), scene.query().with_bv(bv))?;
+        for volume in BoundingVolume::ALL {
+            let found = found(device, bodies.clone(), scene.query().with_volume(volume))?;
             report.asked += 1;
             report.undecided += found.undecided;
             if let Some(wrong) = scene.judge(&found) {
                 report.missed += u64::from(wrong.starts_with("missed"));
                 report.late += u64::from(wrong.starts_with("late"));
-                report.fail(|| format!("{} {}, {}: {wrong}", scene.id, scene.what, bv.name()));
+                report.fail(|| format!("{} {}, {}: {wrong}", scene.id, scene.what, volume.name()));
             }
         }
         if scene.query().kind() == QueryKind::Discrete {
@@ -102,8 +102,8 @@ pub fn ask_turned_scenes(device: &Device, scenes: &[Scene]) -> Result<Report, Er
                 bodies.reverse();
             }
             let bodies = bodies.iter().map(Numbers::body).collect::<Result<_, _>>()?;
-            let bv = Bv::ALL[(turn + turn / 6) % Bv::ALL.len()];
-            let all = found(device, bodies, scene.query().with_bv(bv))?;
+            let volume = BoundingVolume::ALL[(turn + turn / 6) % BoundingVolume::ALL.len()];
+            let all = found(device, bodies, scene.query().with_volume(volume))?;
             let back = |[a, b]: [u32; 2]| {
                 let [a, b] = if exchanged { [b, a] } else { [a, b] };
                 let (a, b) = (counts[0] - 1 - a, counts[counts.len() - 1] - 1 - b);

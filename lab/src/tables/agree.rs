@@ -35,11 +35,11 @@ mod tests {
     use super::super::way::Way;
     use super::*;
     use nearmiss::Stages;
-    use nearmiss::research::Bv;
+    use nearmiss::research::BoundingVolume;
 
     fn cell(moves: bool, front: bool, hashes: &[u64]) -> Cell {
         Cell {
-            way: Way { moves, bv: Bv::Aabb, front },
+            way: Way { moves, volume: BoundingVolume::Aabb, front },
             solver: if moves { Solver::Certified } else { Solver::Exact },
             mean: Stages::default(),
             contacts: 0,

@@ -6,14 +6,14 @@ use super::way::Way;
 use crate::OneQuery;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
-use nearmiss::research::{Bv, Traversal};
+use nearmiss::research::{BoundingVolume, Traversal};
 use nearmiss::{Stage, Stages};
 
 /// Milliseconds of the stages that build a tree and fit its volumes, means over all frames.
 #[derive(Clone, Copy, Debug)]
 pub struct Built {
     /// The volume.
-    pub bv: Bv,
+    pub volume: BoundingVolume,
     /// `construct`, `fit` and `refit`; the others are zero.
     pub mean: Stages,
 }
@@ -23,9 +23,14 @@ pub struct Built {
 ///
 /// # Errors
 /// Device errors.
-pub fn build(device: &Device, frames: &Frames, bv: Bv, walk: Option<Traversal>) -> Result<Built, Error> {
+pub fn build(
+    device: &Device,
+    frames: &Frames,
+    volume: BoundingVolume,
+    walk: Option<Traversal>,
+) -> Result<Built, Error> {
     let bodies = frames.bodies(false)?;
-    let query = Way { moves: false, bv, front: false }.query(walk);
+    let query = Way { moves: false, volume, front: false }.query(walk);
     let mut detector = OneQuery::new(device.clone(), vec![bodies[0].clone()], query)?;
     let mut all = vec![Stages::default(); bodies.len()];
     let last = |ms: Vec<f64>| ms.last().copied().unwrap_or(0.0);
@@ -39,5 +44,5 @@ pub fn build(device: &Device, frames: &Frames, bv: Bv, walk: Option<Traversal>) 
         detector.move_to(0, body.clone())?;
         stages.construct = last(detector.repeat_stage(Stage::Construct, 2)?);
     }
-    Ok(Built { bv, mean: mean(&all) })
+    Ok(Built { volume, mean: mean(&all) })
 }

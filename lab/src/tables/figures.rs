@@ -3,7 +3,7 @@
 use super::build::Built;
 use super::measure::Cell;
 use super::paper_reference;
-use nearmiss::research::{Bv, Solver};
+use nearmiss::research::{BoundingVolume, Solver};
 use serde::Serialize;
 
 /// Columns that all rows of a scene share.
@@ -126,9 +126,9 @@ fn ratio(ours: f64, theirs: Option<f64>) -> Option<f64> {
 pub fn figure_612(paper: &Paper, frames: usize, built: &[Built]) -> Vec<Figure612> {
     let theirs = paper_reference::of(&paper.scene);
     let refit = |b: &Built| b.mean.fit + b.mean.refit;
-    let plain = built.iter().find(|b| b.bv == Bv::Aabb).map(|b| b.mean.construct + refit(b));
+    let plain = built.iter().find(|b| b.volume == BoundingVolume::Aabb).map(|b| b.mean.construct + refit(b));
     let mut rows = Vec::new();
-    let mut row = |stage, bv: Bv, ours_ms, theirs_ms| {
+    let mut row = |stage, volume: BoundingVolume, ours_ms, theirs_ms| {
         rows.push(Figure612 {
             scene: paper.scene.clone(),
             model: paper.model,
@@ -137,7 +137,7 @@ pub fn figure_612(paper: &Paper, frames: usize, built: &[Built]) -> Vec<Figure61
             device: paper.device.clone(),
             profile: paper.profile,
             stage,
-            bv: bv.name(),
+            bv: volume.name(),
             frames,
             ours_ms,
             theirs_ms,
@@ -146,11 +146,11 @@ pub fn figure_612(paper: &Paper, frames: usize, built: &[Built]) -> Vec<Figure61
     };
     for b in built {
         let Some(plain) = plain else { continue };
-        let whole = if b.bv == Bv::Aabb { plain } else { plain + refit(b) };
-        row("construct", b.bv, whole, theirs.and_then(|t| t.construct(b.bv)));
+        let whole = if b.volume == BoundingVolume::Aabb { plain } else { plain + refit(b) };
+        row("construct", b.volume, whole, theirs.and_then(|t| t.construct(b.volume)));
     }
     for b in built {
-        row("refit", b.bv, refit(b), theirs.and_then(|t| t.refit(b.bv)));
+        row("refit", b.volume, refit(b), theirs.and_then(|t| t.refit(b.volume)));
     }
     rows
 }
@@ -168,7 +168,7 @@ pub fn figure_613(paper: &Paper, cells: &[Cell], differing: &[usize]) -> Vec<Fig
             device: paper.device.clone(),
             profile: paper.profile,
             motion: cell.way.asked(),
-            bv: cell.way.bv.name(),
+            bv: cell.way.volume.name(),
             front: cell.way.front,
             solver: cell.solver,
             frames: cell.hashes.len(),
@@ -201,7 +201,7 @@ pub fn figure_614(paper: &Paper, cells: &[Cell]) -> Vec<Figure614> {
             device: paper.device.clone(),
             profile: paper.profile,
             motion: cell.way.asked(),
-            bv: cell.way.bv.name(),
+            bv: cell.way.volume.name(),
             front: cell.way.front,
             refit: share(m.fit + m.refit),
             traverse: share(m.traverse),
@@ -226,7 +226,10 @@ mod tests {
     fn a_construction_is_a_tree_in_boxes() {
         let mean = Stages { construct: 8.0, fit: 1.0, refit: 2.0, ..Stages::default() };
         let oriented = Stages { construct: 9.0, fit: 3.0, refit: 13.0, ..Stages::default() };
-        let built = [Built { bv: Bv::Aabb, mean }, Built { bv: Bv::Obb, mean: oriented }];
+        let built = [
+            Built { volume: BoundingVolume::Aabb, mean },
+            Built { volume: BoundingVolume::Obb, mean: oriented },
+        ];
         let rows = figure_612(&paper("flamenco"), 3, &built);
         let obb = rows.iter().find(|row| row.stage == "construct" && row.bv == "obb").expect("a row");
         assert_eq!((obb.ours_ms, obb.theirs_ms, obb.ratio), (27.0, Some(27.0), Some(1.0)));
@@ -245,7 +248,7 @@ mod tests {
     #[test]
     fn a_scene_that_the_thesis_has_not_has_no_ratio() {
         let mean = Stages { construct: 8.0, ..Stages::default() };
-        let rows = figure_612(&paper("soup"), 3, &[Built { bv: Bv::Aabb, mean }]);
+        let rows = figure_612(&paper("soup"), 3, &[Built { volume: BoundingVolume::Aabb, mean }]);
         assert!(
             rows.iter().all(|row| row.theirs_ms.is_none() && row.ratio.is_none() && row.model.is_empty())
         );

@@ -135,7 +135,7 @@ fn one(paper: &Paper, device: &Device, way: Way, query: Query, bodies: [Body; 2]
         triangles: paper.triangles,
         device: paper.device.clone(),
         motion: way.asked(),
-        bv: way.bv.name(),
+        bv: way.volume.name(),
         front: way.front,
         part: 0.0,
         node_tests: tests,

@@ -1,7 +1,7 @@
 //! The thesis's own figures, milliseconds on its GPU (figures 6.12 and 6.13).
 
 use super::way::Way;
-use nearmiss::research::Bv;
+use nearmiss::research::BoundingVolume;
 
 /// The thesis's GPU.
 pub const PAPER_GPU: &str = "GTX 285 (2008)";
@@ -64,27 +64,27 @@ pub fn of(scene: &str) -> Option<&'static Theirs> {
 }
 
 /// Returns the column of a volume, if the thesis has it.
-fn column(bv: Bv) -> Option<usize> {
-    match bv {
-        Bv::Aabb => Some(0),
-        Bv::Obb => Some(1),
+fn column(volume: BoundingVolume) -> Option<usize> {
+    match volume {
+        BoundingVolume::Aabb => Some(0),
+        BoundingVolume::Obb => Some(1),
         _ => None,
     }
 }
 
 impl Theirs {
     /// Returns the milliseconds of a construction in a volume.
-    pub fn construct(&self, bv: Bv) -> Option<f64> {
-        column(bv).map(|at| self.construct[at])
+    pub fn construct(&self, volume: BoundingVolume) -> Option<f64> {
+        column(volume).map(|at| self.construct[at])
     }
 
     /// Returns the milliseconds of a refit.
-    pub fn refit(&self, bv: Bv) -> Option<f64> {
-        column(bv).map(|at| self.refit[at])
+    pub fn refit(&self, volume: BoundingVolume) -> Option<f64> {
+        column(volume).map(|at| self.refit[at])
     }
 
     /// Returns the milliseconds of a frame.
     pub fn frame(&self, way: Way) -> Option<f64> {
-        column(way.bv).map(|at| self.frame[usize::from(way.front)][2 * usize::from(way.moves) + at])
+        column(way.volume).map(|at| self.frame[usize::from(way.front)][2 * usize::from(way.moves) + at])
     }
 }

@@ -2,7 +2,8 @@
 
 use nearmiss::query::{Continuous, Query};
 use nearmiss::research::{
-    Broad, Bv, ContinuousSolver, FrontShape, Precision, QueryExt, Refit, Search, Traversal, WithSolver,
+    BoundingVolume, BroadPhase, ContinuousSolver, FrontShape, Precision, QueryExt, Refit, Search, Traversal,
+    WithSolver,
 };
 
 /// One way to run a frame.
@@ -11,7 +12,7 @@ pub struct Way {
     /// Whether the query is continuous; else discrete.
     pub moves: bool,
     /// The volume.
-    pub bv: Bv,
+    pub volume: BoundingVolume,
     /// Whether the walk starts from the last frame's front.
     pub front: bool,
 }
@@ -22,11 +23,11 @@ impl Way {
 
     /// Returns every way with these volumes, in the order of the thesis's columns: without the
     /// front first.
-    pub fn every(volumes: &[Bv]) -> Vec<Way> {
+    pub fn every(volumes: &[BoundingVolume]) -> Vec<Way> {
         let mut ways = Vec::new();
         for front in Way::FRONTS {
             for moves in [false, true] {
-                ways.extend(volumes.iter().map(|&bv| Way { moves, bv, front }));
+                ways.extend(volumes.iter().map(|&volume| Way { moves, volume, front }));
             }
         }
         ways
@@ -38,8 +39,13 @@ impl Way {
     pub fn query(self, walk: Option<Traversal>) -> Query {
         let refit = walk.map(|_| Refit::Levels);
         let traversal = if self.front { Some(Traversal::Front(FrontShape::native())) } else { walk };
-        let search =
-            Search { broad: Some(Broad::Tree), bv: Some(self.bv), refit, traversal, ..Search::default() };
+        let search = Search {
+            broad_phase: Some(BroadPhase::Tree),
+            volume: Some(self.volume),
+            refit,
+            traversal,
+            ..Search::default()
+        };
         if self.moves {
             // The thesis does not test the start of a step either.
             let solver = ContinuousSolver::Cubic(Precision::F64);
@@ -57,7 +63,7 @@ impl Way {
 
 impl std::fmt::Display for Way {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        write!(f, "{} {}", self.asked(), self.bv.name().to_uppercase())?;
+        write!(f, "{} {}", self.asked(), self.volume.name().to_uppercase())?;
         if self.front { write!(f, ", front") } else { Ok(()) }
     }
 }

@@ -3,7 +3,7 @@
 use super::*;
 use nearmiss::Device;
 use nearmiss::query::QueryKind;
-use nearmiss::research::{Broad, Bv, QueryExt};
+use nearmiss::research::{BoundingVolume, BroadPhase, QueryExt};
 use nearmiss_lab::OneQuery;
 use support::asked::{of, with_tolerance};
 use support::{judged, machines, sanitizer};
@@ -41,10 +41,14 @@ fn every_walk_finds_the_same() {
     let bodies = [scene::soup(200, 4, true).expect("a scene"), scene::draped(300).expect("a scene")];
     for bodies in [&bodies[..1], &bodies[1..], &bodies[..]] {
         for motion in [QueryKind::Discrete, QueryKind::Continuous] {
-            let truth = prints(engine(), bodies, of(motion).with_bv(Bv::Aabb).with_broad(Broad::Tree));
+            let truth = prints(
+                engine(),
+                bodies,
+                of(motion).with_volume(BoundingVolume::Aabb).with_broad_phase(BroadPhase::Tree),
+            );
             for traversal in support::walks() {
                 // Only tests of plain boxes nest to the bit: then candidates are the same as well.
-                let query = of(motion).with_traversal(traversal).with_bv(Bv::Aabb);
+                let query = of(motion).with_traversal(traversal).with_volume(BoundingVolume::Aabb);
                 assert_eq!(prints(engine(), bodies, query), truth, "{traversal:?}");
                 let order = support::ORDERS[2];
                 assert_eq!(prints(sanitizer(order), bodies, query), truth, "{traversal:?}, {order:?}");
@@ -102,7 +106,7 @@ fn a_refitted_tree_finds_what_a_new_one_does() {
         for bodies in [moving_scenes()[..1].to_vec(), moving_scenes()[1..].to_vec()] {
             // The default tolerance hangs on where a detector begins: named, the bits are the same.
             let named = with_tolerance(of(motion), 1e-5);
-            let query = named.with_bv(Bv::Aabb);
+            let query = named.with_volume(BoundingVolume::Aabb);
             let mut detector = OneQuery::new(engine(), judged(bodies.clone()), query).expect("a detector");
             detector.detect().expect("an answer");
             // A step on, three steps on, far off, and back where it began.

@@ -4,8 +4,8 @@ use super::*;
 use support::asked::of;
 
 /// The answer in that volume.
-fn dressed(body: &Body, motion: QueryKind, bv: Bv) -> Contacts {
-    ask(engine(), vec![body.clone()], of(motion).with_bv(bv))
+fn dressed(body: &Body, motion: QueryKind, volume: BoundingVolume) -> Contacts {
+    ask(engine(), vec![body.clone()], of(motion).with_volume(volume))
 }
 
 /// Each change of a body leaves the same contacts, those of the default volume, in every volume.
@@ -20,24 +20,24 @@ fn every_volume_leaves_the_contacts_as_they_are() {
         let through = mapped(&body, |p| p.map(|x| -x));
         let mirrored = mapped(&body, |p| [p[0], -p[1], p[2]]);
         let backwards = changed(&body, body.faces().iter().rev().copied().collect(), |points| points);
-        for bv in Bv::ALL {
-            let (name, volume) = (body.name(), bv.name());
+        for volume in BoundingVolume::ALL {
+            let name = format!("{}, {}", body.name(), volume.name());
             for (what, other) in [("as it is", &body), ("scaled", &scaled), ("through the origin", &through)]
             {
-                assert_eq!(dressed(other, motion, bv).rows, truth.rows, "{name}, {volume}, {what}");
+                assert_eq!(dressed(other, motion, volume).rows, truth.rows, "{name}, {what}");
             }
-            let (other, last) = (dressed(&backwards, motion, bv), body.face_count() as u32 - 1);
+            let (other, last) = (dressed(&backwards, motion, volume), body.face_count() as u32 - 1);
             if motion == QueryKind::Discrete {
-                assert_eq!(dressed(&mirrored, motion, bv).rows, truth.rows, "{name}, {volume}, mirrored");
+                assert_eq!(dressed(&mirrored, motion, volume).rows, truth.rows, "{name}, mirrored");
                 let turn = |[a, b]: &[u32; 2]| [last - b, last - a];
                 let mut pairs: Vec<[u32; 2]> = other.triangles().iter().map(turn).collect();
                 pairs.sort_unstable();
-                assert_eq!(pairs, truth.triangles(), "{name}, {volume}, backwards");
+                assert_eq!(pairs, truth.triangles(), "{name}, backwards");
             } else {
                 let known = named(&body, truth.contacts(), |v| v);
-                let again = dressed(&mirrored, motion, bv);
-                assert_close(&named(&mirrored, again.contacts(), |v| v), &known, name);
-                assert_eq!(named(&backwards, other.contacts(), |v| v), known, "{name}, {volume}, backwards");
+                let again = dressed(&mirrored, motion, volume);
+                assert_close(&named(&mirrored, again.contacts(), |v| v), &known, &name);
+                assert_eq!(named(&backwards, other.contacts(), |v| v), known, "{name}, backwards");
             }
         }
     }
@@ -54,14 +54,16 @@ fn backwards_in_time_the_same_features_meet() {
             let certified: Vec<Contact> = certified.copied().collect();
             named(&body, &certified, |v| v).into_keys().collect()
         };
-        for bv in Bv::ALL {
-            let (there, here) =
-                (dressed(&body, QueryKind::Continuous, bv), dressed(&back, QueryKind::Continuous, bv));
+        for volume in BoundingVolume::ALL {
+            let (there, here) = (
+                dressed(&body, QueryKind::Continuous, volume),
+                dressed(&back, QueryKind::Continuous, volume),
+            );
             let all = |contacts: &Contacts| named(&body, contacts.contacts(), |v| v);
             for (one, other) in [(&there, &here), (&here, &there)] {
                 let listed = all(other);
                 let lost = sure(one).into_iter().find(|name| !listed.contains_key(name));
-                assert_eq!(lost, None, "{}, {}", body.name(), bv.name());
+                assert_eq!(lost, None, "{}, {}", body.name(), volume.name());
             }
             assert!(!sure(&there).is_empty());
         }

@@ -4,7 +4,7 @@ use nearmiss::Query;
 use nearmiss::contacts::{Kind, NearPair, Rows, Status};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::Continuous;
-use nearmiss::research::{Bv, Certified, CertifiedPrecision, QueryExt, WithSolver};
+use nearmiss::research::{BoundingVolume, Certified, CertifiedPrecision, QueryExt, WithSolver};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use rand::rngs::SmallRng;
@@ -115,8 +115,8 @@ fn what_rounding_cannot_tell_is_the_same_for_every_volume() {
     let all = ask(engine(), vec![body.clone()], query);
     assert!(all.undecided > 60, "{} of {}", all.undecided, all.len());
     assert!(Truth::of(std::slice::from_ref(&body), 0.25).fault(all.near()).is_ok_and(|beyond| beyond > 20));
-    for bv in Bv::ALL {
-        assert_eq!(ask(engine(), vec![body.clone()], query.with_bv(bv)).rows, all.rows, "{bv:?}");
+    for volume in BoundingVolume::ALL {
+        assert_eq!(ask(engine(), vec![body.clone()], query.with_volume(volume)).rows, all.rows, "{volume:?}");
     }
 }
 

@@ -5,7 +5,7 @@ use super::asking;
 use nearmiss::contacts::{Contact, Kind, Status};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::QueryKind;
-use nearmiss::research::{Bv, QueryExt, Solver};
+use nearmiss::research::{BoundingVolume, QueryExt, Solver};
 use nearmiss::{Contacts, Query};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
@@ -132,8 +132,8 @@ fn every(r: &mut SmallRng) -> Vec<Pair> {
     (0..360).map(|i| all[i % all.len()]).map(|(near, when)| pair(r, near, when)).collect()
 }
 
-fn query(solver: Solver, bv: Bv, separation: f64, scale: f64) -> Query {
-    with_tolerance(asking(QueryKind::Continuous, solver, separation), 1e-9 * scale).with_bv(bv)
+fn query(solver: Solver, volume: BoundingVolume, separation: f64, scale: f64) -> Query {
+    with_tolerance(asking(QueryKind::Continuous, solver, separation), 1e-9 * scale).with_volume(volume)
 }
 
 /// At the separation itself, and just above: found, and not late. (X38.)
@@ -150,13 +150,13 @@ fn what_is_exactly_that_far_is_found() {
         let pairs = every(&mut r);
         let bodies = bodies(&pairs, scale, at, wide);
         let s = DISTANCE as f64 * scale;
-        for (i, bv) in Bv::ALL.into_iter().enumerate() {
+        for (i, volume) in BoundingVolume::ALL.into_iter().enumerate() {
             let solver = support::brute::SOLVERS[i % 3];
             for separation in [s, s * (1.0 + f64::EPSILON), s * (1.0 + 1e-7)] {
-                let all = ask(engine(), bodies.clone(), query(solver, bv, separation, scale));
+                let all = ask(engine(), bodies.clone(), query(solver, volume, separation, scale));
                 for (i, x) in pairs.iter().enumerate() {
                     let (near, when) = (x.near, x.when);
-                    let what = format!("{near:?} {when:?} {solver:?} {bv:?} {scale:e} {separation:e}");
+                    let what = format!("{near:?} {when:?} {solver:?} {volume:?} {scale:e} {separation:e}");
                     let Some(c) = found(&all, i as u32, near) else { panic!("missed: {what}") };
                     let truth = match when {
                         When::Start => 0.0,
@@ -180,7 +180,7 @@ fn what_is_farther_is_not_found() {
     let bodies = bodies(&pairs, 1.0, 0.0, false);
     for solver in [Solver::Certified, Solver::CertifiedF64] {
         let separation = DISTANCE as f64 * (1.0 - 1e-7);
-        let all = ask(engine(), bodies.clone(), query(solver, Bv::Linear, separation, 1.0));
+        let all = ask(engine(), bodies.clone(), query(solver, BoundingVolume::Linear, separation, 1.0));
         for (i, x) in pairs.iter().enumerate() {
             let hit = found(&all, i as u32, x.near);
             assert_eq!(hit.is_some(), x.when == When::Through, "{:?} {:?}: {hit:?}", x.near, x.when);
@@ -193,8 +193,8 @@ fn what_is_farther_is_not_found() {
 fn a_separation_below_the_precision_loses_nothing() {
     let pairs = every(&mut SmallRng::seed_from_u64(43));
     let bodies = bodies(&pairs, 1.0, 0.0, true);
-    for (i, bv) in Bv::ALL.into_iter().enumerate() {
-        let all = ask(engine(), bodies.clone(), query(support::brute::SOLVERS[i % 3], bv, 1e-12, 1.0));
+    for (i, volume) in BoundingVolume::ALL.into_iter().enumerate() {
+        let all = ask(engine(), bodies.clone(), query(support::brute::SOLVERS[i % 3], volume, 1e-12, 1.0));
         for (i, x) in pairs.iter().enumerate() {
             let hit = found(&all, i as u32, x.near);
             // Only what goes on to the other's place meets it, at the end.

@@ -2,7 +2,7 @@
 
 use super::*;
 use nearmiss::query::Rebuild;
-use nearmiss::research::{Broad, QueryExt};
+use nearmiss::research::{BroadPhase, QueryExt};
 use nearmiss_lab::OneQueryOnSeveral;
 
 /// Spheres that all lie in one place until they get their poses, and those.
@@ -22,8 +22,8 @@ fn the_first_frame_that_places_bodies_builds() {
     let (scene, poses) = scattered();
     let ids: Vec<BodyId> = scene.ids().collect();
     let inputs: Vec<_> = ids.iter().zip(&poses).map(|(&id, pose)| (id, Motion::pose(*pose))).collect();
-    for broad in Broad::ALL {
-        let query = Query::discrete().with_broad(broad);
+    for broad in BroadPhase::ALL {
+        let query = Query::discrete().with_broad_phase(broad);
         let detector = |rebuild| {
             OneQuery::new(engine(), scene.clone(), query.with_rebuild(rebuild)).expect("a detector")
         };

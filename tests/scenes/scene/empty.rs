@@ -2,13 +2,14 @@
 
 use super::*;
 use nearmiss::contacts::Rows;
-use nearmiss::research::{Broad, DetectorExt, QueryExt};
+use nearmiss::research::{BroadPhase, DetectorExt, QueryExt};
 use nearmiss_lab::OneQueryOnSeveral;
 
 fn queries() -> Vec<Query> {
     let all =
         [Query::discrete(), Query::continuous(), Query::earliest(), Query::near(0.1), Query::distance()];
-    let trees = [Query::discrete(), Query::continuous()].map(|query| query.with_broad(Broad::Tree));
+    let trees =
+        [Query::discrete(), Query::continuous()].map(|query| query.with_broad_phase(BroadPhase::Tree));
     all.into_iter().chain(trees).collect()
 }
 
@@ -84,7 +85,7 @@ fn bodies_without_triangles_and_several_devices_answer_nothing() {
         let what = format!("{:?}", query.kind());
         let mut detector = OneQuery::new(engine(), Body::deformable(points.clone()), query).expect(&what);
         ask_all(&mut detector, &what);
-        if query.kind() != QueryKind::Distance && query.search().broad.is_none() {
+        if query.kind() != QueryKind::Distance && query.search().broad_phase.is_none() {
             let mut several =
                 OneQueryOnSeveral::new(vec![engine(), engine()], Scene::new(), query).expect(&what);
             is_nothing(&several.detect().expect(&what), &what);

@@ -3,7 +3,7 @@
 use super::pairwise::{differ, two_by_two};
 use super::*;
 use nearmiss::query::Continuous;
-use nearmiss::research::{Bv, Certified, DetectorExt, QueryExt, WithSolver};
+use nearmiss::research::{BoundingVolume, Certified, DetectorExt, QueryExt, WithSolver};
 use support::{between, ways};
 
 /// Bodies of very different sizes about one place, of every kind; in doubles where asked.
@@ -46,11 +46,11 @@ fn pairs_of_any_sizes_are_answered_as_alone() {
         for query in queries() {
             let scene = sized(seed, seed % 2 == 1);
             let truth = two_by_two(&scene, query);
-            for bv in Bv::ALL {
+            for volume in BoundingVolume::ALL {
                 let mut detector =
-                    OneQuery::new(engine(), scene.clone(), query.with_bv(bv)).expect("a detector");
+                    OneQuery::new(engine(), scene.clone(), query.with_volume(volume)).expect("a detector");
                 let contacts = detector.detect().expect("an answer");
-                assert_eq!(differ(&contacts, &truth), None, "seed {seed}, {bv:?}, {query:?}");
+                assert_eq!(differ(&contacts, &truth), None, "seed {seed}, {volume:?}, {query:?}");
                 found += contacts.len();
                 several += usize::from(detector.tolerance() != detector.largest_tolerance());
             }

@@ -23,7 +23,8 @@ use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::QueryKind;
 use nearmiss::research::{
-    Broad, Bv, FrontShape, KindExt, QueryExt, QueueShape, Refit, Search, StealShape, Traversal,
+    BoundingVolume, BroadPhase, FrontShape, KindExt, QueryExt, QueueShape, Refit, Search, StealShape,
+    Traversal,
 };
 use nearmiss::scene::{CollisionFilter, Scene};
 use nearmiss::{Device, Error, Query};
@@ -80,14 +81,21 @@ pub fn walks_of(kind: QueryKind) -> Vec<Option<Traversal>> {
 pub fn ways(query: Query) -> impl Iterator<Item = Query> {
     let refits = [Refit::Levels, Refit::Treelets];
     let walks = move || walks_of(query.kind());
-    let of_trees = move |bv| {
+    let of_trees = move |volume| {
         walks().into_iter().flat_map(move |traversal| {
-            let search = Search { broad: Some(Broad::Tree), bv: Some(bv), traversal, ..Search::default() };
+            let search = Search {
+                broad_phase: Some(BroadPhase::Tree),
+                volume: Some(volume),
+                traversal,
+                ..Search::default()
+            };
             refits.map(|refit| query.with_search(Search { refit: Some(refit), ..search }))
         })
     };
-    let tiles = move |bv| query.kind().takes_traversals().then(|| query.with_bv(bv).with_broad(Broad::Tiles));
-    Bv::ALL.into_iter().flat_map(move |bv| of_trees(bv).chain(tiles(bv)))
+    let tiles = move |volume| {
+        query.kind().takes_traversals().then(|| query.with_volume(volume).with_broad_phase(BroadPhase::Tiles))
+    };
+    BoundingVolume::ALL.into_iter().flat_map(move |volume| of_trees(volume).chain(tiles(volume)))
 }
 
 /// One answer on one device: of one body against itself, of more against each other only.

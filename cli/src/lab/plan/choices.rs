@@ -4,7 +4,7 @@ use nearmiss::device::Device;
 use nearmiss::mesh::Body;
 use nearmiss::query::Query;
 use nearmiss::research::QueryExt;
-use nearmiss::research::{Balance, Broad, Bv, Certified, QueueShape, Traversal};
+use nearmiss::research::{Balance, BoundingVolume, BroadPhase, Certified, QueueShape, Traversal};
 use nearmiss::words::counted;
 use nearmiss_lab::OneQuery;
 use std::fmt::Write;
@@ -30,12 +30,12 @@ pub fn text(detector: &mut OneQuery, device: &Device) -> String {
     };
     line("query", format!("{}, {pairs}", query.kind()));
     line("machine", format!("{} ({})", device.name(), device.backend()));
-    let swept = !query.kind().is_at_rest() && query.bv() != Bv::Linear;
-    line("bounding volume", format!("{}{}", query.bv().name(), if swept { ", swept" } else { "" }));
-    let broad = query.broad_on(device.is_gpu());
-    let why = if query.search().broad.is_some() { "as given" } else { "the default of this machine" };
+    let swept = !query.kind().is_at_rest() && query.volume() != BoundingVolume::Linear;
+    line("bounding volume", format!("{}{}", query.volume().name(), if swept { ", swept" } else { "" }));
+    let broad = query.broad_phase_on(device.is_gpu());
+    let why = if query.search().broad_phase.is_some() { "as given" } else { "the default of this machine" };
     line("broad phase", format!("{broad}: {why}"));
-    if broad != Broad::Tiles {
+    if broad != BroadPhase::Tiles {
         trees(&query, device).into_iter().for_each(|(name, value)| line(name, value));
     }
     line("solver", query.solver().promise().into());

@@ -83,7 +83,7 @@ pub fn json(detector: &mut OneQuery, device: &Device, plan: Option<&Plan>) -> Re
         device: device.name(),
         backend: device.backend(),
         query: query.kind(),
-        bounding_volume: query.bv().name(),
+        bounding_volume: query.volume().name(),
         solver: query.solver(),
         tolerance,
         largest_tolerance: largest.filter(|_| largest != tolerance),

@@ -49,10 +49,10 @@ fn checked_of(bodies: &[Body], fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), E
     };
     let mut tiles = Tiles::<Aabb>::new(&device, &layout, 0.01)?;
     tiles.construct(&given, &layout)?;
-    BroadPhase::fit(&mut tiles, &given)?;
-    BroadPhase::refit(&mut tiles, &given)?;
+    CandidateSearch::fit(&mut tiles, &given)?;
+    CandidateSearch::refit(&mut tiles, &given)?;
     fault(&mut tiles);
-    BroadPhase::<f32>::check(&tiles, &layout, &layout.faces, &[at])
+    CandidateSearch::<f32>::check(&tiles, &layout, &layout.faces, &[at])
 }
 
 /// Changes one element.

@@ -8,7 +8,7 @@ mod rims;
 mod static_margin;
 
 use super::sorted::{Sorted, SortedFor};
-use super::{BroadContext, BroadPhase, Candidates, Which};
+use super::{BroadContext, CandidateSearch, Candidates, Which};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::counts::Counts;
@@ -229,7 +229,7 @@ where
     launch::at_once::<Triangles>(device, u32::MAX as usize, triangles)
 }
 
-impl<R: Precision, V: Kernels> BroadPhase<R> for Tiles<V> {
+impl<R: Precision, V: Kernels> CandidateSearch<R> for Tiles<V> {
     fn construct(&mut self, given: &BroadContext<R>, layout: &Layout) -> Result<(), Error> {
         let BroadContext { device, frames, faces, .. } = *given;
         self.sorted.construct(device, frames, faces)?;

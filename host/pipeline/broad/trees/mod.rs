@@ -9,7 +9,7 @@ mod walk;
 pub use tree::{Tree, TreeSpec};
 pub use volumes::Volumes;
 
-use super::{BroadContext, BroadPhase, Candidates};
+use super::{BroadContext, CandidateSearch, Candidates};
 use crate::device::Device;
 use crate::error::Error;
 use crate::pipeline::counts::Counts;
@@ -45,7 +45,7 @@ impl<R: Precision, V: Kernels> Trees<R, V> {
     }
 }
 
-impl<R: Precision, V: Kernels> BroadPhase<R> for Trees<R, V> {
+impl<R: Precision, V: Kernels> CandidateSearch<R> for Trees<R, V> {
     fn construct(&mut self, given: &BroadContext<R>, layout: &Layout) -> Result<(), Error> {
         self.walk.invalidate();
         self.forest.construct(given, layout)

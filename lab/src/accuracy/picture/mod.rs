@@ -44,7 +44,8 @@ pub fn tolerance(device: &str, rows: &[Row]) -> Result<String, Error> {
 
 /// Returns whether a row has defaults for everything except solver and tolerance.
 fn is_plain(row: &Row) -> bool {
-    let default = nearmiss::research::Bv::default_for(nearmiss::query::QueryKind::Continuous).name();
+    let default =
+        nearmiss::research::BoundingVolume::default_for(nearmiss::query::QueryKind::Continuous).name();
     row.bv.is_none_or(|bv| bv == default) && (row.bv.is_some() || row.precision == "f64")
 }
 

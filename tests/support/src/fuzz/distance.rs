@@ -15,7 +15,8 @@ pub fn ask(bytes: &[u8], lie: impl Fn(&mut Rows)) -> Result<(), String> {
         Ok(bodies) => bodies,
         Err(error) => return typed(&error),
     };
-    let query = Query::distance().with_search(Search { broad: None, traversal: None, ..query.search() });
+    let query =
+        Query::distance().with_search(Search { broad_phase: None, traversal: None, ..query.search() });
     let mut found = match detect(&bodies, query) {
         Ok(found) => found,
         Err(error) => return typed(&error),

@@ -8,7 +8,9 @@ use nearmiss::contacts::{Contact, Kind, Rows, Status};
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::{Body, Mesh, Positions, Topology};
 use nearmiss::query::QueryKind;
-use nearmiss::research::{Broad, Bv, FrontShape, QueryExt, QueueShape, Refit, Search, StealShape, Traversal};
+use nearmiss::research::{
+    BoundingVolume, BroadPhase, FrontShape, QueryExt, QueueShape, Refit, Search, StealShape, Traversal,
+};
 use nearmiss::scene::CollisionFilter;
 use nearmiss::{Contacts, Detector, Device, Error, Query};
 use nearmiss_lab::oracle::{Toi, first_contact, triangles_meet};
@@ -36,8 +38,8 @@ pub fn decode(bytes: &[u8]) -> Result<(Vec<Body>, Query), Error> {
     let traversal = walks.get(usize::from(shape >> 2 & 15) % (walks.len() + 1)).copied();
     let refit = [Refit::Levels, Refit::Treelets][usize::from(shape >> 6) % 2];
     let query = queries[usize::from(choice / 3) % queries.len()].with_search(Search {
-        broad: Some(if traversal.is_some() { Broad::Tree } else { Broad::Tiles }),
-        bv: Some(Bv::ALL[usize::from(shape) % Bv::ALL.len()]),
+        broad_phase: Some(if traversal.is_some() { BroadPhase::Tree } else { BroadPhase::Tiles }),
+        volume: Some(BoundingVolume::ALL[usize::from(shape) % BoundingVolume::ALL.len()]),
         traversal,
         refit: traversal.map(|_| refit),
         ..Search::default()
