@@ -264,7 +264,7 @@ pub trait DetectorExt {
     /// [`Error::Bug`] with the first violation; those of the device.
     fn check_volumes(&mut self, query: &Query) -> Result<(), Error>;
 
-    /// Returns the number of levels of a query's tree over moving bodies, and of that over static
+    /// Returns the number of levels of a query's tree over moving bodies, and of that over fixed
     /// ones. A tree without bodies is left out.
     fn depths(&mut self, query: &Query) -> Vec<usize>;
 

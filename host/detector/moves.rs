@@ -38,10 +38,10 @@ impl Detector {
                 });
             }
             body.check(input)?;
-            if let (false, Motion::OnDevice(lent)) = (self.device.is_gpu(), input) {
+            if let (false, Motion::OnDevice(motion)) = (self.device.is_gpu(), input) {
                 // SAFETY: the maker of the rows promised that the detector's device can read them
                 // during this call. That device is a CPU.
-                let (ends, poses) = unsafe { lent.read() };
+                let (ends, poses) = unsafe { motion.read() };
                 body.check_found(&ends, &poses)?;
             }
         }
@@ -81,18 +81,20 @@ impl Detector {
                 pipeline.place(self.scene.bodies(), moved).map(|()| self.engine.pipeline = Some(pipeline))
             }
             // Memory of the caller is read now.
-            None if self.scene.bodies().iter().any(|body| body.lent().is_some()) => self.begin_scene(),
+            None if self.scene.bodies().iter().any(|body| body.device_motion().is_some()) => {
+                self.begin_scene()
+            }
             None => Ok(()),
         };
         let is_held = self.engine.pipeline.is_some() || self.device.is_gpu();
         for body in self.scene.bodies_mut() {
-            let lent = body.lent().copied();
+            let motion = body.device_motion().copied();
             body.placed();
             // If nothing can meet, no pipeline holds the positions: the host reads them.
-            if let (false, Some(lent)) = (is_held, lent) {
+            if let (false, Some(motion)) = (is_held, motion) {
                 // SAFETY: the maker of the rows promised that the detector's device can read them
                 // during this call. That device is a CPU.
-                let (ends, poses) = unsafe { lent.read() };
+                let (ends, poses) = unsafe { motion.read() };
                 body.bring(&ends, &poses);
             }
         }

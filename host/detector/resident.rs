@@ -88,7 +88,7 @@ impl Detector {
     fn bring(&mut self, places: &Places) {
         for (i, body) in self.scene.bodies_mut().iter_mut().enumerate() {
             // Bodies in memory of the caller are skipped: they have moved since.
-            if body.is_device_resident() && body.lent().is_none() {
+            if body.is_device_resident() && body.device_motion().is_none() {
                 let (ends, poses) = places.of(i);
                 body.bring(&ends, poses);
                 self.resident.set_lost(i, false);
@@ -129,7 +129,7 @@ impl Detector {
     /// Checks that the host or a pipeline has the position of every body.
     pub(super) fn all_known(&self) -> Result<(), Error> {
         self.none_lost()?;
-        let gone = |body: &&Body| body.is_device_resident() && body.lent().is_none();
+        let gone = |body: &&Body| body.is_device_resident() && body.device_motion().is_none();
         match self.scene.bodies().iter().find(gone) {
             Some(body) if self.engine.pipeline.is_none() => Err(Error::InvalidArgument {
                 what: format!(

@@ -53,9 +53,10 @@ impl BelowPrecision {
         // Positive, or not set.
         let tolerance = certified.tolerance.filter(|t| *t > 0.0)?;
         // The kernels measure the extent of a device-resident body.
-        let away = bodies.iter().any(Body::is_device_resident);
+        let any_resident = bodies.iter().any(Body::is_device_resident);
         let extent = || extent(&bodies.iter().map(bounds).fold(NOTHING, union));
-        (away || tolerance < finest * extent()).then_some(BelowPrecision::Listed { tolerance, finest })
+        (any_resident || tolerance < finest * extent())
+            .then_some(BelowPrecision::Listed { tolerance, finest })
     }
 
     /// Returns the caveat of an earliest query, which lists no pairs. The host must know all

@@ -37,7 +37,7 @@ pub struct Layout {
     /// Hubs of each triangle if pairs round a hub are candidates, so that only the rims exclude
     /// pairs; empty without hubs.
     pub rims: Arc<Vec<u32>>,
-    /// The bodies with triangles that may move, and those that are static.
+    /// The bodies with triangles that may move, and those that are fixed.
     pub trees: [Vec<usize>; 2],
 }
 

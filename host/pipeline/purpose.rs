@@ -47,6 +47,6 @@ pub const EARLIEST: &str = "the earliest time of contact";
 /// Keys of contacts.
 pub const ORDER: &str = "keys of the contacts, and their counts";
 /// Addresses and poses in memory of the caller, and checks of its numbers.
-pub const LENT: &str = "addresses of the caller's memory, and checks of its numbers";
+pub const DEVICE_ARRAYS: &str = "addresses of the caller's memory, and checks of its numbers";
 /// Status of the answer, for the caller's kernels.
 pub const STATUS: &str = "capacity of each list, and status of the answer";

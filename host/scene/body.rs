@@ -24,7 +24,7 @@ pub struct Body {
     /// Default tolerance of the original mesh, once it was computed.
     pub(super) tolerance: Kept,
     /// Place of the body, if positions and poses are stale.
-    pub(super) away: Option<Away>,
+    pub(super) resident: Option<Resident>,
 }
 
 /// A number that follows from the body's original mesh. Bodies are equal whether or not it was
@@ -40,9 +40,9 @@ impl PartialEq for Kept {
 
 /// Place of a body with stale positions and poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Away {
+pub(crate) enum Resident {
     /// In memory of the caller.
-    Lent(DeviceMotion),
+    InArrays(DeviceMotion),
     /// On a device, at both ends or at one.
     Placed {
         /// Whether there are two ends.
@@ -64,7 +64,7 @@ impl Body {
             poses: [Pose::default(); 2],
             radius: 0.0,
             tolerance: Kept::default(),
-            away: None,
+            resident: None,
         }
     }
 
@@ -161,7 +161,7 @@ impl Body {
     /// here are stale. [`Detector::download_positions`](crate::Detector::download_positions)
     /// updates them.
     pub fn is_device_resident(&self) -> bool {
-        self.away.is_some()
+        self.resident.is_some()
     }
 
     /// Positions at the start of the step, or of the only frame; stale if the body [is
@@ -218,7 +218,7 @@ impl Body {
 
     /// Whether there are two frames.
     pub fn is_moving(&self) -> bool {
-        self.positions_t1.is_some() || matches!(self.away, Some(Away::Placed { moving: true }))
+        self.positions_t1.is_some() || matches!(self.resident, Some(Resident::Placed { moving: true }))
     }
 
     /// Copies the frames to meshes: one, or two.

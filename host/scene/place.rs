@@ -1,6 +1,6 @@
 //! Placing of a body from frame to frame.
 
-use super::body::{Away, Kept};
+use super::body::{Kept, Resident};
 use super::{Body, BodyKind, DeviceMotion, Motion, Pose, of_edges};
 use crate::Error;
 use crate::mesh::{self, MAX_ABS_F64, Points, Positions, Problem};
@@ -124,9 +124,11 @@ impl Body {
 
     /// Applies a motion that [`Body::check`] accepts. Cost: a copy of the positions.
     pub(crate) fn put(&mut self, input: &Motion) {
-        self.away = None;
+        self.resident = None;
         match input {
-            Motion::OnDevice(input) => (self.away, self.positions_t1) = (Some(Away::Lent(*input)), None),
+            Motion::OnDevice(input) => {
+                (self.resident, self.positions_t1) = (Some(Resident::InArrays(*input)), None)
+            }
             Motion::Positions(t0) => self.put_vertices(*t0, None),
             Motion::Step([t0, t1]) => self.put_vertices(*t0, Some(*t1)),
             Motion::Pose(pose) => self.poses = [*pose; 2],
@@ -149,21 +151,21 @@ impl Body {
     }
 
     /// Motion in memory of the caller, if the body's place is there.
-    pub(crate) fn lent(&self) -> Option<&DeviceMotion> {
-        if let Some(Away::Lent(input)) = &self.away { Some(input) } else { None }
+    pub(crate) fn device_motion(&self) -> Option<&DeviceMotion> {
+        if let Some(Resident::InArrays(input)) = &self.resident { Some(input) } else { None }
     }
 
     /// Records that memory of the caller was read.
     pub(crate) fn placed(&mut self) {
-        if let Some(Away::Lent(input)) = self.away {
-            self.away = Some(Away::Placed { moving: input.is_moving() });
+        if let Some(Resident::InArrays(input)) = self.resident {
+            self.resident = Some(Resident::Placed { moving: input.is_moving() });
         }
     }
 
     /// Records that memory of the caller was read again, or may have been: known positions are
     /// stale.
     pub(crate) fn placed_again(&mut self, moving: bool) {
-        self.away = Some(Away::Placed { moving });
+        self.resident = Some(Resident::Placed { moving });
     }
 
     /// Checks the place in which the device has put the body, at both ends or at the only one.
@@ -186,7 +188,7 @@ impl Body {
     /// at the later end, even if the device does not know yet that it rests.
     pub(crate) fn bring(&mut self, ends: &[Positions], poses: &[Pose]) {
         let moving = self.is_moving();
-        self.away = None;
+        self.resident = None;
         match (self.kind, ends, poses) {
             (BodyKind::Rigid, _, [start, end]) if moving => self.poses = [*start, *end],
             (BodyKind::Rigid, _, [.., end]) => self.poses = [*end; 2],
@@ -201,7 +203,7 @@ impl Body {
     pub(crate) fn rest(&mut self) -> bool {
         if self.is_device_resident() {
             let moved = self.is_moving();
-            self.away = Some(Away::Placed { moving: false });
+            self.resident = Some(Resident::Placed { moving: false });
             return moved;
         }
         match self.kind {
@@ -227,7 +229,7 @@ impl Body {
     /// known too late to decide by.
     pub(crate) fn needs_f64(&self) -> bool {
         self.positions_t0.is_f64()
-            || self.lent().is_some_and(DeviceMotion::has_f64)
+            || self.device_motion().is_some_and(DeviceMotion::has_f64)
             || (self.kind == BodyKind::Rigid && !self.faces.is_empty())
     }
 

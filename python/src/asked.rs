@@ -1,6 +1,6 @@
 //! A detector as one thread at a time asks it, and when what was answered.
 
-use crate::lent::Held;
+use crate::borrowed::Held;
 use nearmiss::Error;
 use std::sync::atomic::{AtomicU64, Ordering};
 

@@ -1,8 +1,8 @@
 //! Motions of bodies, as Python gives them.
 
+use crate::borrowed::{BorrowedRows, Held, is_on_gpu, on_cpu, on_gpu};
 use crate::errors::choice;
 use crate::host::{Most, positions};
-use crate::lent::{Held, LentRows, is_on_gpu, on_cpu, on_gpu};
 use crate::pose::{GivenPose, Pose};
 use nearmiss::Device;
 use nearmiss::mesh::Positions;
@@ -42,7 +42,7 @@ enum Given {
 /// One end of a deformable body.
 enum End {
     Here(Positions),
-    Lent(LentRows),
+    Borrowed(BorrowedRows),
 }
 
 impl Frame {
@@ -70,14 +70,14 @@ impl Frame {
 
     /// As the library takes what lies on the device.
     pub fn on_device(&self) -> PyResult<Vec<(BodyId, DeviceMotion)>> {
-        let lent = |(id, given): &(BodyId, Given)| match given {
+        let borrowed = |(id, given): &(BodyId, Given)| match given {
             Given::Known(Motion::OnDevice(input)) => Ok((*id, *input)),
             Given::At(_) | Given::Step(_) | Given::Known(_) => Err(choice(
                 format!("the array of body {id} cannot be read in place by a submission"),
                 "give arrays that stay: of the GPU or, on a CPU, of numpy in float32 or float64 with packed rows",
             )),
         };
-        self.bodies.iter().map(lent).collect()
+        self.bodies.iter().map(borrowed).collect()
     }
 
     fn given(&mut self, input: &Bound<'_, PyAny>, of: Of<'_>) -> PyResult<Given> {
@@ -97,7 +97,7 @@ impl Frame {
                 let [a, b] = [a.get().given(py, device)?, b.get().given(py, device)?];
                 return match (a, b) {
                     (GivenPose::Known(a), GivenPose::Known(b)) => Ok(Given::Known(Motion::PoseStep([a, b]))),
-                    (GivenPose::Lent(a, held), GivenPose::Lent(b, more)) => {
+                    (GivenPose::Borrowed(a, held), GivenPose::Borrowed(b, more)) => {
                         self.held.extend(held.into_iter().chain(more));
                         Ok(Given::Known(Motion::OnDevice(DeviceMotion::PoseStep([a, b]))))
                     }
@@ -106,7 +106,7 @@ impl Frame {
             }
             return match (end(&ends[0], of)?, end(&ends[1], of)?) {
                 (End::Here(a), End::Here(b)) => Ok(Given::Step([a, b])),
-                (End::Lent(a), End::Lent(b)) => {
+                (End::Borrowed(a), End::Borrowed(b)) => {
                     self.held.extend([a.held, b.held]);
                     Ok(Given::Known(Motion::OnDevice(DeviceMotion::Step([a.rows, b.rows]))))
                 }
@@ -120,7 +120,7 @@ impl Frame {
         if let Ok(pose) = input.cast::<Pose>() {
             return Ok(Given::Known(match pose.get().given(py, device)? {
                 GivenPose::Known(pose) => Motion::pose(pose),
-                GivenPose::Lent(pose, held) => {
+                GivenPose::Borrowed(pose, held) => {
                     self.held.extend(held);
                     Motion::OnDevice(DeviceMotion::Pose(pose))
                 }
@@ -128,7 +128,7 @@ impl Frame {
         }
         Ok(match end(input, of)? {
             End::Here(at) => Given::At(at),
-            End::Lent(at) => {
+            End::Borrowed(at) => {
                 self.held.push(at.held);
                 Given::Known(Motion::OnDevice(DeviceMotion::Positions(at.rows)))
             }
@@ -139,12 +139,12 @@ impl Frame {
 /// One end: read where it lies if the device reaches it there, else copied.
 fn end(object: &Bound<'_, PyAny>, Of { device, what, most }: Of<'_>) -> PyResult<End> {
     if is_on_gpu(object) {
-        return on_gpu(object, device, (3, what)).map(End::Lent);
+        return on_gpu(object, device, (3, what)).map(End::Borrowed);
     }
     if !device.is_gpu()
-        && let Some(lent) = on_cpu(object, what)?
+        && let Some(rows) = on_cpu(object, what)?
     {
-        return Ok(End::Lent(lent));
+        return Ok(End::Borrowed(rows));
     }
     positions(object, what, most).map(End::Here)
 }

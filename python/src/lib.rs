@@ -6,6 +6,7 @@
 
 mod answer;
 mod asked;
+mod borrowed;
 mod columns;
 mod detector;
 mod device;
@@ -14,7 +15,6 @@ mod errors;
 mod frame;
 mod geometry;
 mod host;
-mod lent;
 mod on_device;
 mod pose;
 mod query;
@@ -32,6 +32,8 @@ mod _native {
     #[pymodule_export]
     use super::answer::Answer;
     #[pymodule_export]
+    use super::borrowed::is_on_gpu;
+    #[pymodule_export]
     use super::detector::Detector;
     #[pymodule_export]
     use super::device::Device;
@@ -39,8 +41,6 @@ mod _native {
     use super::geometry::Geometry;
     #[pymodule_export]
     use super::host::read_mesh;
-    #[pymodule_export]
-    use super::lent::is_on_gpu;
     #[pymodule_export]
     use super::on_device::{DeviceAnswer, DeviceArray};
     #[pymodule_export]

@@ -1,8 +1,8 @@
 //! Poses of rigid bodies.
 
+use crate::borrowed::{Held, is_on_gpu, on_gpu};
 use crate::errors::{choice, raised};
 use crate::host::{points, row};
-use crate::lent::{Held, is_on_gpu, on_gpu};
 use crate::query::{Remade, remade};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::scene::{self, BodyKind, DevicePose, Motion};
@@ -125,7 +125,7 @@ fn checked(pose: &scene::Pose) -> Result<(), Error> {
 /// A pose as a frame takes it.
 pub enum GivenPose {
     Known(scene::Pose),
-    Lent(DevicePose, [Held; 2]),
+    Borrowed(DevicePose, [Held; 2]),
 }
 
 impl Pose {
@@ -140,9 +140,9 @@ impl Pose {
             return Ok(GivenPose::Known(pose));
         }
         let one_row = |of: &Py<PyAny>, width: i64, what: &str| {
-            let lent = on_gpu(of.bind(py), device, (width, what))?;
-            match lent.rows.len() {
-                1 => Ok(lent),
+            let rows = on_gpu(of.bind(py), device, (width, what))?;
+            match rows.rows.len() {
+                1 => Ok(rows),
                 rows => Err(choice(
                     format!("{what} of {rows} rows"),
                     format!("give one row of {width} numbers, a pose a body"),
@@ -152,7 +152,7 @@ impl Pose {
         let translation = one_row(&self.translation, 3, "a translation")?;
         let rotation = one_row(&self.rotation, 4, "a rotation")?;
         let pose = DevicePose { translation: translation.rows, rotation: rotation.rows };
-        Ok(GivenPose::Lent(pose, [translation.held, rotation.held]))
+        Ok(GivenPose::Borrowed(pose, [translation.held, rotation.held]))
     }
 }
 

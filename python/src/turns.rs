@@ -2,10 +2,10 @@
 
 use crate::answer::{Answer, typed};
 use crate::asked::{Asked, Does};
+use crate::borrowed::Held;
 use crate::detector::Detector;
 use crate::errors::{choice, raised};
 use crate::frame::{Frame, Named, known, numbered};
-use crate::lent::Held;
 use crate::watch::watched;
 use nearmiss::Error;
 use nearmiss::scene::BodyId;

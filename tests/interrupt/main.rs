@@ -2,8 +2,8 @@
 //! answer then, and the same question again has that of a detector that was never interrupted.
 
 mod calls;
+mod device_arrays;
 mod hard;
-mod lent;
 
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::device::{Backend, Interrupt};

@@ -169,7 +169,7 @@ fn a_folded_fan_meets_itself_and_others_as_without_hubs() {
 fn fans_of_several_bodies_meet_as_without_hubs() {
     let fan = |seed| Shape::folded(120, seed);
     let environment = |at: u32| CollisionFilter::in_environment(at);
-    // At one place, with equal local vertex numbers; a static one; one that is not tested against itself; environments.
+    // At one place, with equal local vertex numbers; a fixed one; one that is not tested against itself; environments.
     let scenes: [Vec<Body>; 3] = [
         vec![fan(1).moving(1, 0.1), fan(1).moving(2, 0.1)],
         vec![

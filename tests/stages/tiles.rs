@@ -80,7 +80,7 @@ fn a_list_of_pairs_of_tiles_that_is_too_short_grows() {
     assert_eq!(contacts.len(), n * (n - 1) / 2);
 }
 
-/// Bodies of every kind, frame after frame; the static one is fitted once.
+/// Bodies of every kind, frame after frame; the fixed one is fitted once.
 #[test]
 fn many_bodies_have_the_same_contacts_step_by_step() {
     let piles = [

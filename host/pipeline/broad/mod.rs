@@ -91,9 +91,9 @@ pub enum Which {
     Before(Span<u64>),
 }
 
-/// A broad phase of a scene: moving bodies against each other and against static ones.
+/// A broad phase of a scene: moving bodies against each other and against fixed ones.
 pub trait CandidateSearch<R: Precision>: Send {
-    /// Builds the structure from the positions at t = 0. The static part is built only the first
+    /// Builds the structure from the positions at t = 0. The fixed part is built only the first
     /// time. Volumes are not fitted yet.
     ///
     /// # Errors
@@ -107,7 +107,7 @@ pub trait CandidateSearch<R: Precision>: Send {
     fn learn(&mut self) -> Result<(), Error>;
 
     /// Sets the margin: from the next fit on, volumes hold everything within `margin` of the
-    /// triangles. Returns whether the structure must be built again: true for static trees that
+    /// triangles. Returns whether the structure must be built again: true for fixed trees that
     /// were built with a smaller margin.
     fn set_margin(&mut self, margin: f32) -> bool;
 
@@ -195,7 +195,7 @@ pub trait CandidateSearch<R: Precision>: Send {
         Ok(0.0)
     }
 
-    /// Returns the number of levels of the moving part and, if there is one, of the static part.
+    /// Returns the number of levels of the moving part and, if there is one, of the fixed part.
     fn depths(&self) -> Vec<usize>;
 
     /// Returns a hash of each stage's memory after the last frame.

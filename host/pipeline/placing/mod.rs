@@ -1,8 +1,8 @@
 //! Place: the vertices of all bodies on the device, at the positions of each frame.
 
-mod lent;
+mod device_arrays;
 
-pub use lent::{Seen, Whereabouts};
+pub use device_arrays::{Seen, Whereabouts};
 
 use super::layout::Layout;
 use super::precision::Precision;
@@ -12,7 +12,7 @@ use crate::mesh;
 use crate::pipeline::{launch, purpose};
 use crate::scene::{Body, BodyKind, DeviceMotion, Pose};
 use bytemuck::Pod;
-use lent::LentMemory;
+use device_arrays::DeviceArrays;
 use nearmiss_kernels::abi::{
     KEEPS_END, LENT, LENT_POSES, POSED, PlaceArgs, Placement, Point, PoseRecord, Positions, RESTING, Span,
     StartsArgs, UPLOADED, VertexMotion as Ends,
@@ -118,7 +118,7 @@ pub struct Placing<R: Precision> {
     /// The values in `placements`.
     placed: Vec<Placement>,
     /// Data of bodies in memory of the caller; empty if there are none.
-    lent: LentMemory,
+    arrays: DeviceArrays,
     last: Last<R>,
 }
 
@@ -153,12 +153,12 @@ impl<R: Precision> Placing<R> {
             placements: device.buffer(0)?,
             poses: device.buffer(0)?,
             placed: Vec::new(),
-            lent: LentMemory::new(&device.of(purpose::LENT))?,
+            arrays: DeviceArrays::new(&device.of(purpose::DEVICE_ARRAYS))?,
             last: Last::Host,
         };
         placing.vertices.write(bodies.iter())?;
         let moved: Vec<Moved> = (0..bodies.len())
-            .filter(|&i| is_rigid(&&bodies[i]) || bodies[i].lent().is_some())
+            .filter(|&i| is_rigid(&&bodies[i]) || bodies[i].device_motion().is_some())
             .map(|body| Moved { body, rests: false })
             .collect();
         placing.put(device, bodies, &moved)?;
@@ -228,8 +228,8 @@ impl<R: Precision> Placing<R> {
         if matches!(self.vertices, Vertices::Moving(_)) {
             return self.put_together(device, bodies, moved);
         }
-        let any_lent = moved.iter().any(|m| bodies[m.body].lent().is_some());
-        let goes_first = |m: &Moved| any_lent && m.rests && !bodies[m.body].is_device_resident();
+        let any_in_arrays = moved.iter().any(|m| bodies[m.body].device_motion().is_some());
+        let goes_first = |m: &Moved| any_in_arrays && m.rests && !bodies[m.body].is_device_resident();
         let one_end = |first: bool| {
             let group = moved.iter().filter(|m| goes_first(m) == first);
             group.map(|m| m.at_one_end(bodies)).collect::<Vec<_>>()
@@ -243,9 +243,9 @@ impl<R: Precision> Placing<R> {
 
     fn put_together(&mut self, device: &Device, bodies: &[Body], moved: &[Moved]) -> Result<(), Error> {
         let all = moved.len() == bodies.len();
-        (self.last, self.lent.any) = (Last::Nothing, false);
+        (self.last, self.arrays.any) = (Last::Nothing, false);
         let comes = |m: &Moved| {
-            !m.rests && bodies[m.body].kind() != BodyKind::Rigid && bodies[m.body].lent().is_none()
+            !m.rests && bodies[m.body].kind() != BodyKind::Rigid && bodies[m.body].device_motion().is_none()
         };
         if all && moved.iter().all(comes) {
             self.keeps.fill(false);
@@ -254,7 +254,8 @@ impl<R: Precision> Placing<R> {
         }
         let moving = matches!(self.vertices, Vertices::Moving(_));
         let ends = if moving { 2 } else { 1 };
-        let (mut placed, mut poses, mut uploads, mut lent) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (mut placed, mut poses, mut uploads, mut arrays) =
+            (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let (mut before, mut uploaded) = (0, 0);
         for &Moved { body: i, rests } in moved {
             let (body, vertex) = (&bodies[i], self.starts[i]);
@@ -262,14 +263,14 @@ impl<R: Precision> Placing<R> {
             if count == 0 {
                 continue;
             }
-            let keeps = !moving && (rests || body.lent().is_some_and(DeviceMotion::is_moving));
+            let keeps = !moving && (rests || body.device_motion().is_some_and(DeviceMotion::is_moving));
             self.keeps[i] = keeps;
             let placement = Placement { vertex, before, source: self.rest_starts[i], ..Placement::default() };
-            placed.push(match (rests, body.lent(), body.kind()) {
+            placed.push(match (rests, body.device_motion(), body.kind()) {
                 (true, _, _) => Placement { from: RESTING, ..placement },
                 (false, Some(input), kind) => {
-                    let first = lent.len() as u32;
-                    lent.extend(input.records(if keeps { 2 } else { ends }));
+                    let first = arrays.len() as u32;
+                    arrays.extend(input.records(if keeps { 2 } else { ends }));
                     let from = if kind == BodyKind::Rigid { LENT_POSES } else { LENT };
                     let from = if keeps { from | KEEPS_END } else { from };
                     Placement { from, lent: first, pose: 2 * i as u32, ..placement }
@@ -301,20 +302,20 @@ impl<R: Precision> Placing<R> {
             write(&device.of(purpose::PLACEMENTS), &mut self.placements, &placed)?;
             self.placed = placed;
         }
-        self.lent.hold(&device.of(purpose::LENT), lent, 2 * bodies.len())?;
+        self.arrays.hold(&device.of(purpose::DEVICE_ARRAYS), arrays, 2 * bodies.len())?;
         if self.later.is_empty() && self.keeps.contains(&true) {
-            self.later = device.of(purpose::LENT).buffer(self.vertices.len())?;
+            self.later = device.of(purpose::DEVICE_ARRAYS).buffer(self.vertices.len())?;
         }
         let args = PlaceArgs {
             placements: self.placements.span().part(0, self.placed.len() as u64),
             uploaded: self.uploaded.span(),
             rest: self.rest.span(),
             poses: self.poses.span(),
-            found: self.lent.found.span(),
-            lent: self.lent.places.span(),
+            found: self.arrays.found.span(),
+            lent: self.arrays.places.span(),
             vertices: self.vertices.span(),
             later: self.later.span(),
-            seen: self.lent.seen.span(),
+            seen: self.arrays.seen.span(),
             most: if R::WIDE { mesh::MAX_ABS_F64 } else { mesh::MAX_ABS_F32.into() },
             count: before,
             pad: 0,

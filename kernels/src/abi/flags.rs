@@ -67,7 +67,7 @@ flags! {
     TraverseFlags {
         /// Pairs that share a vertex are emitted too.
         KEEP_ADJACENT,
-        /// The root has two trees below it: a static one, whose own pairs are not wanted, and a
+        /// The root has two trees below it: a fixed one, whose own pairs are not wanted, and a
         /// moving one.
         GRAFTED,
         /// Traversals by pairs of nodes also list the pairs at which the descent ends.

@@ -30,7 +30,7 @@ pub fn check<V: Contain>(
             let end = (i + 1).saturating_mul(each).min(triangles[part]);
             let faces = || (i * each..end).map(|k| face(leaves[(first + k) as usize].triangle()));
             let (_, hub) = faces().next().ok_or(Violation::Levels)?;
-            // Static tiles are not tested against themselves.
+            // Fixed tiles are not tested against themselves.
             let is_one = part == 0 && faces().all(|(_, other)| other == hub);
             let held = |v: u32| {
                 let [t0, t1] = ends(v);

@@ -24,12 +24,12 @@ pub const fn below(level: u32) -> u32 {
 }
 
 /// Layout of tiles and of the nodes above them: level by level, tiles first. Within a level moving
-/// tiles come first, then static ones. The two have separate nodes on every level.
+/// tiles come first, then fixed ones. The two have separate nodes on every level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Levels {
     /// How many levels there are: at least 2, the tiles one of them.
     pub count: u32,
-    /// Nodes of the top level above moving tiles, and above static ones.
+    /// Nodes of the top level above moving tiles, and above fixed ones.
     pub tops: [u32; 2],
 }
 
@@ -43,7 +43,7 @@ pub struct Part {
 }
 
 impl Levels {
-    /// The levels for so many moving and so many static triangles.
+    /// The levels for so many moving and so many fixed triangles.
     pub fn of(triangles: [u32; 2]) -> Levels {
         let mut count = 2;
         loop {
@@ -87,7 +87,7 @@ impl Levels {
 pub struct Tiles<'a, V> {
     /// The layout.
     pub levels: Levels,
-    /// Moving triangles, and static ones.
+    /// Moving triangles, and fixed ones.
     pub triangles: [u32; 2],
     /// Places for triangles, tile by tile.
     pub leaves: &'a [Node<V>],

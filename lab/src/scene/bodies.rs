@@ -70,7 +70,7 @@ fn there_and_back(step: u32) -> u32 {
 }
 
 impl Bodies {
-    /// Makes a pile of `balls` rigid balls of 128 triangles in layers on a static floor of `floor`
+    /// Makes a pile of `balls` rigid balls of 128 triangles in layers on a fixed floor of `floor`
     /// squares a side. Neighbouring balls overlap by about a tenth. Above them a cloth of `cloth`
     /// squares a side, tested against itself too, sinks into them.
     ///
@@ -107,7 +107,7 @@ impl Bodies {
     }
 
     /// Makes `count` worlds that never meet, all in one place. Each is an environment with a floor
-    /// of two static triangles. Above it, `balls` rigid balls of 128 triangles fill about half of a
+    /// of two fixed triangles. Above it, `balls` rigid balls of 128 triangles fill about half of a
     /// cube.
     ///
     /// # Errors

@@ -93,21 +93,21 @@ fn fresh(bodies: &[Placed], query: Query) -> Contacts {
 }
 
 /// Numbers of the caller's, for one frame.
-enum Lent {
+enum Arrays {
     Rows([Buffer<f64>; 2]),
     Poses([[Buffer<f64>; 2]; 2]),
 }
 
-impl Lent {
-    fn new(place: &Place) -> Option<Lent> {
+impl Arrays {
+    fn new(place: &Place) -> Option<Arrays> {
         let device = engine();
         let upload = |numbers: &[f64]| device.upload(numbers).expect("memory");
         Some(match place {
             Place::Vertices(ends) => {
-                Lent::Rows(ends.each_ref().map(|end| upload(end.to_f64().as_flattened())))
+                Arrays::Rows(ends.each_ref().map(|end| upload(end.to_f64().as_flattened())))
             }
             Place::Poses(ends) => {
-                Lent::Poses(ends.map(|pose| [upload(&pose.translation), upload(&pose.rotation)]))
+                Arrays::Poses(ends.map(|pose| [upload(&pose.translation), upload(&pose.rotation)]))
             }
             Place::Fixed => return None,
         })
@@ -120,18 +120,18 @@ impl Lent {
             DeviceRows::new(buffer.span().addr(), buffer.len() / width, 8 * width, Number::F64).expect("rows")
         };
         match self {
-            Lent::Rows(ends) => DeviceMotion::Step(ends.each_ref().map(|end| rows(end, 3))),
-            Lent::Poses(ends) => DeviceMotion::PoseStep(ends.each_ref().map(|[translation, rotation]| {
+            Arrays::Rows(ends) => DeviceMotion::Step(ends.each_ref().map(|end| rows(end, 3))),
+            Arrays::Poses(ends) => DeviceMotion::PoseStep(ends.each_ref().map(|[translation, rotation]| {
                 DevicePose { translation: rows(translation, 3), rotation: rows(rotation, 4) }
             })),
         }
     }
 
-    /// What was lent is overwritten.
+    /// Overwrites them.
     fn spoil(&mut self) {
         let buffers: Vec<&mut Buffer<f64>> = match self {
-            Lent::Rows(ends) => ends.iter_mut().collect(),
-            Lent::Poses(ends) => ends.as_flattened_mut().iter_mut().collect(),
+            Arrays::Rows(ends) => ends.iter_mut().collect(),
+            Arrays::Poses(ends) => ends.as_flattened_mut().iter_mut().collect(),
         };
         for buffer in buffers {
             let spoilt = vec![f64::NAN; buffer.len()];
@@ -165,7 +165,7 @@ fn life(seed: u64, query: Query, fault: impl Fn(&mut Contacts)) -> Result<usize,
         if rng.random_bool(0.2) {
             edit(&mut rng, &mut detector, &mut bodies);
         }
-        let mut lent = Vec::new();
+        let mut arrays = Vec::new();
         let mut named = Vec::new();
         for placed in &mut bodies {
             if rng.random_bool(0.6) {
@@ -176,21 +176,21 @@ fn life(seed: u64, query: Query, fault: impl Fn(&mut Contacts)) -> Result<usize,
             }
         }
         let mut inputs = Vec::new();
-        for (id, is_lent) in named {
+        for (id, in_arrays) in named {
             let placed = bodies.iter().find(|placed| placed.id == id).expect("a body");
             // A frame of a query in motion has a body at both ends.
             let at_both = inputs.is_empty() && !query.kind().is_at_rest();
-            match (Lent::new(&placed.place).filter(|_| is_lent), placed.place.input(at_both)) {
+            match (Arrays::new(&placed.place).filter(|_| in_arrays), placed.place.input(at_both)) {
                 (Some(numbers), _) => {
                     inputs.push((id, Motion::OnDevice(numbers.input())));
-                    lent.push(numbers);
+                    arrays.push(numbers);
                 }
                 (None, Some(input)) => inputs.push((id, input)),
                 (None, None) => {}
             }
         }
         let mut found = detector.frame(&inputs).expect("an answer");
-        lent.iter_mut().for_each(Lent::spoil);
+        arrays.iter_mut().for_each(Arrays::spoil);
         fault(&mut found);
         let wanted = fresh(&bodies, query);
         if renumbered(&bodies, &found) != wanted.rows {

@@ -83,7 +83,7 @@ impl Shape {
         Body::deformable(self.mesh(self.points.clone()))
     }
 
-    /// Static.
+    /// Fixed.
     pub fn fixed(&self) -> Body {
         Body::fixed(self.mesh(self.points.clone()))
     }

@@ -80,8 +80,8 @@ fn launches_do_not_grow_with_bodies() {
 fn a_scene_pays_for_what_it_has() {
     let launches = |scene: Scene, motion| cost(scene, motion).0;
     let fixed = pile(40, Body::fixed, false);
-    assert_eq!(launches(fixed.clone(), QueryKind::Discrete), 0, "static alone");
-    assert_eq!(launches(fixed.clone(), QueryKind::Continuous), 0, "static alone");
+    assert_eq!(launches(fixed.clone(), QueryKind::Discrete), 0, "fixed alone");
+    assert_eq!(launches(fixed.clone(), QueryKind::Continuous), 0, "fixed alone");
     let with = |kind: fn(Mesh) -> Body, n: usize| {
         let mut scene = fixed.clone();
         for body in pile(n, kind, false).bodies() {
@@ -90,18 +90,14 @@ fn a_scene_pays_for_what_it_has() {
         scene
     };
     for motion in [QueryKind::Discrete, QueryKind::Continuous] {
-        // Place is the one launch more that bodies of several kinds take; what is static takes none.
+        // Place is the one launch more that bodies of several kinds take; what is fixed takes none.
         let one = launches(Scene::from(pile(1, Body::deformable, false).bodies().to_vec()), motion);
         assert_eq!(launches(pile(2, Body::deformable, false), motion), one, "two deformable bodies");
-        assert_eq!(
-            launches(with(Body::deformable, 1), motion),
-            one + 1,
-            "a deformable body over static ones"
-        );
+        assert_eq!(launches(with(Body::deformable, 1), motion), one + 1, "a deformable body over fixed ones");
         // Rigid ones are in doubles: there are no wider signs for what single precision leaves uncertain.
         let rigid = one;
         assert_eq!(launches(pile(2, Body::rigid, false), motion), rigid, "rigid bodies");
-        assert_eq!(launches(with(Body::rigid, 300), motion), rigid, "many rigid bodies over static ones");
+        assert_eq!(launches(with(Body::rigid, 300), motion), rigid, "many rigid bodies over fixed ones");
     }
 }
 

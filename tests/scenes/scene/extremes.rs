@@ -1,4 +1,4 @@
-//! The catalogue of extremes as scenes of many bodies: each twice, in two worlds that do not meet, and once more with a static
+//! The catalogue of extremes as scenes of many bodies: each twice, in two worlds that do not meet, and once more with a fixed
 //! body of every world far away. Each world answers as the bodies do alone.
 
 use super::*;

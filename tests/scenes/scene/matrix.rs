@@ -66,11 +66,11 @@ fn scenes() -> [(&'static str, Scene, [u64; 3]); 6] {
         }
     }
     [
-        ("static only", pile(10, Body::fixed, false), [0, 0, 0]),
+        ("fixed only", pile(10, Body::fixed, false), [0, 0, 0]),
         ("rigid only", pile(10, Body::rigid, false), [10, 80, 120]),
         ("one deformable", one(), [1, 8, 12]),
         ("two deformable", pile(2, Body::deformable, false), [2, 16, 24]),
-        ("one over a static one", pair, [1, 8, 12]),
+        ("one over a fixed one", pair, [1, 8, 12]),
         ("500 environments", worlds, [1000, 8000, 12000]),
     ]
 }
@@ -99,7 +99,7 @@ fn launches_of_a_frame() {
         for (motion, walk, narrow) in stages {
             let plan = plan(&scene, motion);
             let placed = match name {
-                "static only" | "one deformable" if name == "static only" || !asks(motion, 1) => {
+                "fixed only" | "one deformable" if name == "fixed only" || !asks(motion, 1) => {
                     assert_eq!((launches(&plan), plan.bytes()), ([0; 7], 0), "{name}, {motion:?}");
                     continue;
                 }
@@ -146,8 +146,8 @@ fn bytes_of_a_scene() {
             // What rigid bodies need.
             told("vertices of rigid bodies without a pose", point * 8 * rigid);
             told("poses of rigid bodies", 64 * ends * rigid);
-            // A body over a static one is one that is placed among others.
-            let placed = if rigid > 0 { rigid } else { u64::from(name == "one over a static one") };
+            // A body over a fixed one is one that is placed among others.
+            let placed = if rigid > 0 { rigid } else { u64::from(name == "one over a fixed one") };
             told("which bodies are placed, and how", 24 * placed);
             told(
                 "vertices of deformable bodies, uploaded",

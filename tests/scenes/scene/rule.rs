@@ -28,7 +28,7 @@ fn corners(last: f64) -> Positions {
     Positions::F64(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, last]])
 }
 
-/// A detector of a deformable body, a rigid one and a static one.
+/// A detector of a deformable body, a rigid one and a fixed one.
 fn detector() -> (OneQuery, [BodyId; 3]) {
     let own = || mesh(corners(0.0), [0, 1, 2]).expect("a mesh");
     let mut scene = Scene::new();
@@ -104,7 +104,7 @@ fn every_error_is_of_its_class() {
         ),
         ("a pose of a deformable body", class(frame(0, Motion::pose(Pose::default())))),
         ("positions of a rigid one", class(frame(1, Motion::positions(&good)))),
-        ("a frame of a static one", class(frame(2, Motion::positions(&good)))),
+        ("a frame of a fixed one", class(frame(2, Motion::positions(&good)))),
         ("a distance", class(of(Query::near(f64::NAN)))),
         ("no distance", class(of(Query::near(0.0)))),
         ("a tolerance", class(of(support::asked::with_tolerance(Query::continuous(), -1.0)))),

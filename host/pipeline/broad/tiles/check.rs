@@ -38,7 +38,7 @@ impl<V: Kernels> Tiles<V> {
             of(MOVING).or_else(|| of(FIXED))
         };
         let is_static = |triangle: u32| place(triangle).is_some_and(|(part, _)| part == FIXED);
-        let margin = |triangle| if is_static(triangle) { self.static_margin.fitted() } else { self.margin };
+        let margin = |triangle| if is_static(triangle) { self.fixed_margin.fitted() } else { self.margin };
         let leaf =
             |triangle: u32| leaf_volume::<R, V>(faces[triangle as usize], frames).near(margin(triangle));
         let mut seen = self.triangles.map(|count| vec![false; count as usize]);

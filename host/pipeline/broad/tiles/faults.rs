@@ -12,7 +12,7 @@ use nearmiss_kernels::bv::{Aabb, Volume};
 /// A change to sound tiles.
 type Fault = fn(&mut Tiles<Aabb>);
 
-/// Returns the checker's verdict on tiles over three bodies, one of them static, after `fault`.
+/// Returns the checker's verdict on tiles over three bodies, one of them fixed, after `fault`.
 fn checked(fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), Error> {
     let bodies = [
         soup(700, 5, false),
@@ -62,7 +62,7 @@ fn change<T: bytemuck::Pod>(buffer: &mut Buffer<T>, at: usize, change: impl Fn(&
     buffer.write(&all).expect("written");
 }
 
-/// The first leaf of the static body: after three and a half groups of 16 tiles.
+/// The first leaf of the fixed body: after three and a half groups of 16 tiles.
 const STATIC_LEAF: usize = 4 * 512;
 /// The node above the second 16 tiles: after all tiles.
 const ABOVE: usize = 6 * 16 + 1;
@@ -105,7 +105,7 @@ fn every_fault_is_named() {
         ("Fit { node: 40 }", |tiles| change(&mut tiles.leaves, 40, |node| node.link = LEAF | 3)),
         ("Leaf { leaf: 41 }", |tiles| change(&mut tiles.leaves, 41, |node| node.last = 3)),
         ("Leaf { leaf: 42 }", |tiles| change(&mut tiles.leaves, 42, |node| node.link &= !LEAF)),
-        // A triangle of the static body among moving ones, and one past the last triangle.
+        // A triangle of the fixed body among moving ones, and one past the last triangle.
         ("Leaf { leaf: 43 }", |tiles| change(&mut tiles.leaves, 43, |node| node.link = LEAF | 1_700)),
         ("Leaf { leaf: 1700 }", |tiles| change(&mut tiles.leaves, 1_700, |node| node.link = LEAF | 3)),
         ("Leaf { leaf: 2050 }", |tiles| {

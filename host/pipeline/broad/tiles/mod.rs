@@ -4,8 +4,8 @@
 mod check;
 #[cfg(test)]
 mod faults;
+mod fixed_margin;
 mod rims;
-mod static_margin;
 
 use super::sorted::{Sorted, SortedFor};
 use super::{BroadContext, CandidateSearch, Candidates, Which};
@@ -16,6 +16,7 @@ use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::{launch, purpose};
+use fixed_margin::FixedMargin;
 use nearmiss_kernels::abi::{
     BodyRecord, FilterArgs, FitTilesArgs, NONE, Node, NodeFilter, Pair, RefitTilesArgs, Span,
     TileFiltersArgs, TilePairsArgs, TileTrianglesArgs, TreeBody, counter,
@@ -23,7 +24,6 @@ use nearmiss_kernels::abi::{
 use nearmiss_kernels::bvh::tiles::{self, Levels, Part, TILE};
 use nearmiss_kernels::entry::{self, Entry, Kernels};
 use nearmiss_kernels::math::Vec3;
-use static_margin::StaticMargin;
 use std::collections::BTreeSet;
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -35,11 +35,11 @@ const SAMPLE: u32 = 64;
 /// Least number of tiles for which a sample saves more than it costs. On a GPU its cost is
 /// launches: with 1,000 tiles it slows an H200 down.
 const SAMPLED: u32 = 2048;
-/// The two parts of the memory: moving and static.
+/// The two parts of the memory: moving and fixed.
 const MOVING: usize = 0;
 const FIXED: usize = 1;
 
-/// The order of static triangles: bodies and triangles.
+/// The order of fixed triangles: bodies and triangles.
 struct StaticOrder {
     bodies: Vec<TreeBody>,
     triangles: Buffer<u64>,
@@ -48,13 +48,13 @@ struct StaticOrder {
 /// Tiles over the bodies of a layout.
 pub struct Tiles<V> {
     levels: Levels,
-    /// Number of moving and of static triangles.
+    /// Number of moving and of fixed triangles.
     triangles: [u32; 2],
     /// The order of moving triangles.
     sorted: Sorted,
-    /// Static triangles in order, once their tiles exist.
+    /// Fixed triangles in order, once their tiles exist.
     fixed: Option<StaticOrder>,
-    static_margin: StaticMargin,
+    fixed_margin: FixedMargin,
     leaves: Buffer<Node<V>>,
     nodes: Buffer<Node<V>>,
     /// Filters of the triangles below each node; empty if no filter applies.
@@ -95,14 +95,14 @@ impl<V: Kernels> Tiles<V> {
         let mut of_nodes = filters.buffer(if whose.is_empty() { 0 } else { count })?;
         of_nodes.clear()?;
         let mut rims = device.of(purpose::RIMS).buffer(if layout.rims.is_empty() { 0 } else { count })?;
-        // Static tiles have no rims.
+        // Fixed tiles have no rims.
         rims.clear()?;
         let room = PAIRS_A_TILE * triangles[MOVING].div_ceil(TILE) as usize;
         Ok(Tiles {
             sorted: Sorted::new(device, layout, &layout.trees[MOVING], SortedFor::Tiles)?,
             listed: (0, 0),
             fixed: None,
-            static_margin: StaticMargin::default(),
+            fixed_margin: FixedMargin::default(),
             leaves,
             nodes: volumes.upload(&vec![nothing; count])?,
             filters: of_nodes,
@@ -169,14 +169,14 @@ impl<V: Kernels> Tiles<V> {
         launch::blocks::<entry::fit_tiles<R, V>>(given.device, above.count, &args)
     }
 
-    /// Fits static tiles, unless they are already fitted with a suitable margin.
+    /// Fits fixed tiles, unless they are already fitted with a suitable margin.
     fn fit_static<R: Precision>(&mut self, given: &BroadContext<R>) -> Result<(), Error> {
         let fixed = self.fixed.as_ref().map(|fixed| fixed.triangles.span());
-        let Some(triangles) = fixed.filter(|_| self.static_margin.take(self.margin, !given.is_submitted))
+        let Some(triangles) = fixed.filter(|_| self.fixed_margin.take(self.margin, !given.is_submitted))
         else {
             return Ok(());
         };
-        Tiles::fit(self, given, FIXED, triangles, self.static_margin.fitted())?;
+        Tiles::fit(self, given, FIXED, triangles, self.fixed_margin.fitted())?;
         Tiles::refit(self, given.device, FIXED)
     }
 
@@ -340,7 +340,7 @@ impl<R: Precision, V: Kernels> CandidateSearch<R> for Tiles<V> {
 
     fn met_beyond(&self) -> Result<u64, Error> {
         let (end, count) = self.listed;
-        // The first tile of a pair is the earlier one, and in the share. Static tiles come last and
+        // The first tile of a pair is the earlier one, and in the share. Fixed tiles come last and
         // belong to every share.
         let beyond = end..self.tiles();
         let pairs = self.tile_pairs.first(count)?;

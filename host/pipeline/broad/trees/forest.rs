@@ -1,8 +1,8 @@
-//! The trees of a scene: a moving tree, refitted every frame, and a static tree, built and fitted
+//! The trees of a scene: a moving tree, refitted every frame, and a fixed tree, built and fitted
 //! once.
 //!
 //! Both share one memory and one root, so that one walk finds all pairs: moving with moving, and
-//! moving with static. See `nearmiss_kernels::stage::construct::graft`.
+//! moving with fixed. See `nearmiss_kernels::stage::construct::graft`.
 
 use super::tree::{Room, Tree, TreeSpec};
 use super::volumes::Volumes;
@@ -31,7 +31,7 @@ pub struct Forest<V> {
     fixed: Option<Fixed>,
 }
 
-/// A static tree, as it was built.
+/// A fixed tree, as it was built.
 struct Fixed {
     bodies: Vec<usize>,
     layout: (Vec<TreeBody>, u32),
@@ -64,7 +64,7 @@ impl<V: Kernels> Forest<V> {
         Ok(Forest { tree, volumes, has_groups: layout.has_groups(), fixed })
     }
 
-    /// Builds the moving tree and, the first time, the static one.
+    /// Builds the moving tree and, the first time, the fixed one.
     ///
     /// # Errors
     /// Device errors.
@@ -100,7 +100,7 @@ impl<V: Kernels> Forest<V> {
         }
     }
 
-    /// Sets the margin of volumes from the next fit on. Returns whether the static tree must be
+    /// Sets the margin of volumes from the next fit on. Returns whether the fixed tree must be
     /// built again for it.
     pub fn set_margin(&mut self, margin: f32) -> bool {
         self.volumes.margin = margin;
@@ -121,7 +121,7 @@ impl<V: Kernels> Forest<V> {
         TraverseFlags::GRAFTED.when(self.fixed.is_some())
     }
 
-    /// Returns the number of levels of the moving tree and, if there is one, of the static tree.
+    /// Returns the number of levels of the moving tree and, if there is one, of the fixed tree.
     pub fn depths(&self) -> Vec<usize> {
         let fixed = self.fixed.as_ref().map(|fixed| fixed.starts.len().saturating_sub(1));
         std::iter::once(self.tree.depth()).chain(fixed).collect()
@@ -177,13 +177,13 @@ impl<V: Kernels> Forest<V> {
         self.volumes.check_nodes((&links, &nodes, &leaf_nodes), (ROOT, fixed.margin), faces, frames)
     }
 
-    /// Returns the nodes of the static tree as they were before they were grafted, and the parents
+    /// Returns the nodes of the fixed tree as they were before they were grafted, and the parents
     /// of their pairs.
     fn ungrafted(&self, fixed: &Fixed) -> Result<(Vec<Node<V>>, Vec<u32>), Error> {
         let (own, count) = (self.tree.leaves() as u32, fixed.layout.1);
         let nodes = self.volumes.download()?;
         let parents = self.tree.pair_parents.read(self.tree.pair_parents.len())?;
-        // Maps a node back to the static tree's own numbers; a wrong number stays wrong, and a
+        // Maps a node back to the fixed tree's own numbers; a wrong number stays wrong, and a
         // check fails.
         let back = |at: u32| if at == grafted(ROOT, own) { ROOT } else { at.wrapping_sub(2 * own) };
         let mut all = vec![bytemuck::Zeroable::zeroed(); 2 * count as usize];

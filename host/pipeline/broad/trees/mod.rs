@@ -1,4 +1,4 @@
-//! Trees: a moving one, refitted every frame, and a static one, traversed by one of several walks.
+//! Trees: a moving one, refitted every frame, and a fixed one, traversed by one of several walks.
 
 mod forest;
 mod tree;

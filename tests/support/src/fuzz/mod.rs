@@ -6,9 +6,9 @@
 
 pub mod bytes;
 pub mod continuous;
+pub mod device_arrays;
 pub mod discrete;
 pub mod distance;
-pub mod lent;
 pub mod near;
 pub mod scene;
 

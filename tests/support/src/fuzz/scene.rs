@@ -2,7 +2,7 @@
 //! oracle.
 
 use super::bytes::Bytes;
-use super::lent;
+use super::device_arrays;
 use crate::brute::{Row, row};
 use nearmiss::contacts::{Contact, Kind, Rows, Status};
 use nearmiss::device::emulator::{Emulator, Mode};
@@ -87,7 +87,7 @@ pub fn ask(bytes: &[u8], lie: impl Fn(&mut Rows)) -> Result<(), String> {
         Ok(contacts) => contacts,
         Err(error) => return typed(&error),
     };
-    match ENGINE.with(|engine| lent::detect(engine, &bodies, query)) {
+    match ENGINE.with(|engine| device_arrays::detect(engine, &bodies, query)) {
         Ok(other) if other.rows == contacts.rows => {}
         Ok(other) => {
             let (resident, host) = (other.rows, contacts.rows);

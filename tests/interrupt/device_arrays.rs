@@ -1,4 +1,4 @@
-//! Bodies that lie in memory of the caller, and frames that are submitted.
+//! Bodies in memory of the caller, and submitted frames.
 
 use super::{interrupted, looks, same, threads};
 use nearmiss::mesh::Positions;

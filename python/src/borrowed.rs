@@ -19,7 +19,7 @@ pub enum Held {
 }
 
 /// Rows of an array, and what holds it.
-pub struct LentRows {
+pub struct BorrowedRows {
     pub rows: DeviceRows,
     pub held: Held,
 }
@@ -39,7 +39,11 @@ pub fn is_on_gpu(object: &Bound<'_, PyAny>) -> bool {
 }
 
 /// Rows of `width` numbers in a GPU's memory, behind all work that makes them.
-pub fn on_gpu(object: &Bound<'_, PyAny>, device: &Device, (width, what): (i64, &str)) -> PyResult<LentRows> {
+pub fn on_gpu(
+    object: &Bound<'_, PyAny>,
+    device: &Device,
+    (width, what): (i64, &str),
+) -> PyResult<BorrowedRows> {
     let by_dlpack = object.hasattr("__dlpack__")?;
     let told = if by_dlpack { None } else { Some(by_cuda_array_interface(object, what)?) };
     let Some((ordinal, stream)) = device.ordinal().zip(device.stream()) else {
@@ -73,11 +77,11 @@ pub fn on_gpu(object: &Bound<'_, PyAny>, device: &Device, (width, what): (i64, &
             "put both on one",
         ));
     }
-    Ok(LentRows { rows: rows(&shape, width, what)?, held })
+    Ok(BorrowedRows { rows: rows(&shape, width, what)?, held })
 }
 
 /// Points in the host's memory, which the CPU's kernels read where they lie; none where they are not laid out for that.
-pub fn on_cpu(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Option<LentRows>> {
+pub fn on_cpu(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Option<BorrowedRows>> {
     let array = if let Ok(array) = object.cast::<PyUntypedArray>() {
         array.clone()
     } else if object.hasattr("__dlpack__")? {
@@ -109,7 +113,7 @@ pub fn on_cpu(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Option<LentRows
     if !address.is_multiple_of(size as u64) {
         return Ok(None);
     }
-    Ok(Some(LentRows {
+    Ok(Some(BorrowedRows {
         rows: rows(&shape, 3, what)?,
         held: Held::Object { _array: array.into_any().unbind() },
     }))

@@ -10,7 +10,7 @@ use crate::scene::Pose;
 use nearmiss_kernels::abi::{Lent, PoseRecord, Span, seen};
 
 /// Memory to place bodies from the caller's memory.
-pub struct LentMemory {
+pub struct DeviceArrays {
     /// Addresses of the caller's numbers.
     pub places: Buffer<Lent>,
     /// The values in `places`.
@@ -46,13 +46,13 @@ pub struct Whereabouts {
     pub seen: Option<Seen>,
 }
 
-impl LentMemory {
+impl DeviceArrays {
     /// Allocates empty memory.
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(device: &Device) -> Result<LentMemory, Error> {
-        Ok(LentMemory {
+    pub fn new(device: &Device) -> Result<DeviceArrays, Error> {
+        Ok(DeviceArrays {
             places: device.buffer(0)?,
             held: Vec::new(),
             found: device.buffer(0)?,
@@ -93,8 +93,8 @@ impl<R: Precision> Placing<R> {
     pub fn again(&mut self, device: &Device) -> Result<(), Error> {
         let Last::Device(args) = &self.last else { return Ok(()) };
         self.is_at_rest_current = false;
-        if self.lent.any {
-            self.lent.seen.clear()?;
+        if self.arrays.any {
+            self.arrays.seen.clear()?;
         }
         launch::striding::<R::Place>(&device.undisturbed(), args.count as usize, args)
     }
@@ -106,12 +106,12 @@ impl<R: Precision> Placing<R> {
 
     /// Returns the memory that [`Placing::seen`] reads, to be read ahead.
     pub fn ahead(&self) -> Option<Ahead<'_>> {
-        self.lent.any.then(|| self.lent.seen.ahead(seen::COUNT as usize))
+        self.arrays.any.then(|| self.arrays.seen.ahead(seen::COUNT as usize))
     }
 
     /// Returns the checks of the caller's numbers, for a kernel.
     pub fn seen_span(&self) -> Span<u64> {
-        self.lent.seen.span()
+        self.arrays.seen.span()
     }
 
     /// Returns the last frame's checks of the caller's numbers; `None` if it read none.
@@ -119,10 +119,10 @@ impl<R: Precision> Placing<R> {
     /// # Errors
     /// Device errors.
     pub fn seen(&self) -> Result<Option<Seen>, Error> {
-        if !self.lent.any {
+        if !self.arrays.any {
             return Ok(None);
         }
-        let words = self.lent.seen.read(seen::COUNT as usize)?;
+        let words = self.arrays.seen.read(seen::COUNT as usize)?;
         let word = |at: u32| words[at as usize];
         Ok(Some(Seen { invalid: word(seen::INVALID) > 0, largest: f64::from_bits(word(seen::LARGEST)) }))
     }
@@ -160,6 +160,6 @@ impl<R: Precision> Placing<R> {
     /// Device errors.
     pub fn poses(&self) -> Result<Vec<Pose>, Error> {
         let pose = |found: &PoseRecord| Pose { rotation: found.rotation, translation: found.translation };
-        Ok(self.lent.found.read(self.lent.found.len())?.iter().map(pose).collect())
+        Ok(self.arrays.found.read(self.arrays.found.len())?.iter().map(pose).collect())
     }
 }
