@@ -70,10 +70,10 @@ impl Contacts {
         self.is_free = self.rows.is_free(self.starts_crossing);
         self.stats.add(&share.stats);
         self.undecided += share.undecided;
-        share.caveats.into_iter().for_each(|reason| self.degrade(reason));
+        share.caveats.into_iter().for_each(|reason| self.add_caveat(reason));
     }
 
-    fn degrade(&mut self, reason: Caveat) {
+    fn add_caveat(&mut self, reason: Caveat) {
         match self.caveats.iter_mut().find_map(|own| own.and(reason).map(|both| (own, both))) {
             Some((own, both)) => *own = both,
             None => self.caveats.push(reason),

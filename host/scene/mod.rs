@@ -239,24 +239,24 @@ mod tests {
     fn self_contact_is_the_default_of_deformable_bodies_alone_and_among_others() {
         let mesh = || soup(3, 1, false).frames().remove(0);
         let kinds = [Body::deformable(mesh()), Body::rigid(mesh()), Body::fixed(mesh())];
-        for (meets, own) in [
+        for (filter, own) in [
             (CollisionFilter::default(), [true, false, false]),
             (CollisionFilter::in_environment(7), [true, false, false]),
             (CollisionFilter::with_self_collision(), [true, true, false]),
             (CollisionFilter::without_self_collision(), [false; 3]),
         ] {
             let of = |scene: Scene| scene.bodies().iter().map(Body::self_collides).collect::<Vec<_>>();
-            let bodies = kinds.clone().map(|body| body.with_filter(meets));
-            assert_eq!(of(bodies.to_vec().into()), own, "{meets:?}");
+            let bodies = kinds.clone().map(|body| body.with_filter(filter));
+            assert_eq!(of(bodies.to_vec().into()), own, "{filter:?}");
             for (body, own) in bodies.into_iter().zip(own) {
-                assert_eq!(of(body.into()), [own], "alone, {meets:?}");
+                assert_eq!(of(body.into()), [own], "alone, {filter:?}");
             }
         }
     }
 
     #[test]
     fn self_collision_of_a_fixed_body_is_refused_by_name() {
-        let body = |meets| Body::fixed(soup(3, 1, false).frames().remove(0)).with_filter(meets);
+        let body = |filter| Body::fixed(soup(3, 1, false).frames().remove(0)).with_filter(filter);
         let text =
             body(CollisionFilter::with_self_collision()).check_filter().expect_err("refused").to_string();
         assert!(text.contains("self-collision of") && text.contains("fixed"), "{text}");

@@ -66,8 +66,8 @@ impl Body {
         let given = positions(vertices, &format!("vertices of {name}"), Most::OfAnyMesh)?;
         let triangles = self::faces(faces, name, given.len())?;
         let on_itself = self_collision;
-        let meets = CollisionFilter { environment, group, mask, self_collision: on_itself };
-        let made = py.detach(|| Mesh::new(name, given, triangles).map(|mesh| make(mesh).with_filter(meets)));
+        let filter = CollisionFilter { environment, group, mask, self_collision: on_itself };
+        let made = py.detach(|| Mesh::new(name, given, triangles).map(|mesh| make(mesh).with_filter(filter)));
         let body = made.and_then(|body| body.check_filter().map(|()| body));
         Ok(Body { body: body.map_err(raised)? })
     }

@@ -19,7 +19,7 @@ pub struct Described {
     /// A pose a frame, or one, or none.
     pub poses: Vec<Pose>,
     /// Its filter.
-    pub meets: CollisionFilter,
+    pub filter: CollisionFilter,
     /// How messages call it: its name, and the line at which it begins.
     pub called: String,
 }
@@ -181,8 +181,8 @@ fn described(path: &Path, line: usize, table: Table) -> Result<Described, Error>
     let stem = || crate::stem(&meshes[0]);
     let name = table.name.unwrap_or_else(stem);
     let called = format!("body {name:?} (line {line})");
-    let meets = CollisionFilter { environment, group, mask, self_collision };
-    Ok(Described { name, meshes, kind, poses, meets, called })
+    let filter = CollisionFilter { environment, group, mask, self_collision };
+    Ok(Described { name, meshes, kind, poses, filter, called })
 }
 
 /// As a file names it.

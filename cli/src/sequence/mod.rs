@@ -248,7 +248,7 @@ fn of_table(
         BodyKind::Rigid => Body::rigid(mesh),
         _ => Body::deformable(mesh),
     };
-    let mut body = body.with_filter(table.meets);
+    let mut body = body.with_filter(table.filter);
     if let Track::Poses(poses) = &track {
         for (at, pose) in poses.iter().enumerate() {
             body.check(&Motion::pose(*pose)).map_err(|e| {

@@ -112,7 +112,7 @@ counters! { 0;
     VF_HARD,
     /// Edge/edge pairs that are cut into slices.
     EE_HARD,
-    /// Hits whose budget of boxes ended.
+    /// Hits whose iterations ended.
     ENDED,
     /// Those of them that are neither certain contacts nor certainly none.
     ENDED_UNDECIDED,

@@ -122,15 +122,15 @@ impl Bodies {
         let mut movers = Vec::new();
         for world in 0..count {
             let mut rng = Rng::new(u64::from(world));
-            let meets = CollisionFilter::in_environment(world);
+            let filter = CollisionFilter::in_environment(world);
             for _ in 0..balls {
                 let mut centre = rng.point(half);
                 centre[2] += half;
-                let body = Body::rigid(round("ball", &ball, 0.5)?).with_filter(meets);
+                let body = Body::rigid(round("ball", &ball, 0.5)?).with_filter(filter);
                 movers.push((scene.add(body), Ball::new(&mut rng, centre)));
             }
             let floor = Mesh::new("floor", waves(1, 2.0 * half, (0, LIFT - 0.1)), squares_of(1))?;
-            scene.add(Body::fixed(floor).with_filter(meets));
+            scene.add(Body::fixed(floor).with_filter(filter));
         }
         Ok(Bodies { scene, balls: movers, cloth: None })
     }

@@ -130,8 +130,8 @@ fn environments_in_one_place_cost_what_they_cost_alone() {
         let mut scene = Scene::new();
         for world in 0..n {
             for body in pile(6, Body::rigid, false).bodies() {
-                let meets = CollisionFilter { environment: Some(world), ..*body.filter() };
-                scene.add(body.clone().with_filter(meets));
+                let filter = CollisionFilter { environment: Some(world), ..*body.filter() };
+                scene.add(body.clone().with_filter(filter));
             }
         }
         support::ask_scene(engine(), scene, Query::discrete())

@@ -8,9 +8,9 @@ use nearmiss_lab::robustness;
 fn world(bodies: &[Body], environment: u32) -> impl Iterator<Item = Body> {
     let alone = bodies.len() == 1;
     bodies.iter().map(move |body| {
-        let meets =
+        let filter =
             CollisionFilter { self_collision: Some(alone), ..CollisionFilter::in_environment(environment) };
-        body.clone().with_filter(meets)
+        body.clone().with_filter(filter)
     })
 }
 

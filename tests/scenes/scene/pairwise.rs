@@ -69,14 +69,14 @@ pub fn mixed(seed: u64) -> Scene {
                 Body::moving(mesh, end).expect("two frames")
             }
         };
-        let meets = CollisionFilter {
+        let filter = CollisionFilter {
             environment: [Some(0), Some(0), Some(1), None][rng.random_range(0..4)],
             group: if seed.is_multiple_of(2) { u32::MAX } else { rng.random_range(0..4) },
             mask: if seed.is_multiple_of(2) { u32::MAX } else { rng.random_range(0..4) },
             // Of a fixed body it is refused.
             self_collision: Some(rng.random_bool(0.5)).filter(|own| !own || body.kind() != BodyKind::Fixed),
         };
-        let id = scene.add(body.with_filter(meets));
+        let id = scene.add(body.with_filter(filter));
         gone = gone.or((i == 3).then_some(id));
     }
     scene.remove(gone.expect("the fourth")).expect("a body");

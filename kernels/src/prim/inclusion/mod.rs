@@ -30,7 +30,7 @@
 //!   and is rounded outward.
 //! - (c) Together the halves, and the rest after a cut, cover everything that may have a contact.
 //! - (d) Every box ends rejected, accepted, or skipped. The last two charge its start to `toi`. So
-//!   does each box left when the budget or the stack ends. The box with the first contact is never
+//!   does each box left when the iterations or the stack end. The box with the first contact is never
 //!   rejected.
 //! - (e) A box is skipped uncharged only if it starts after a certified contact.
 //! - (f) Take three linearly independent directions, each for one parameter. Suppose their products

@@ -22,7 +22,7 @@ pub struct Params {
 }
 
 impl Params {
-    /// Touching, within the whole step, with the usual budget.
+    /// Touching, within the whole step, with the usual limit of iterations.
     pub fn new(tolerance: f64) -> Self {
         Params { tolerance, min_separation: 0.0, end: 1.0, max_iterations: Self::MAX_ITERATIONS, pad: 0 }
     }
@@ -40,7 +40,7 @@ pub struct Verdict {
     pub toi: f64,
     /// The first contact is not after; the end of the step, if there need be none.
     pub toi_upper: f64,
-    /// 0 separated, 1 contact, 2 undecided; plus 4 if the budget or the stack ended.
+    /// 0 separated, 1 contact, 2 undecided; plus 4 if the iterations or the stack ended.
     pub state: u32,
     /// Boxes looked at.
     pub boxes: u32,
@@ -125,7 +125,7 @@ impl Verdict {
         self.state & CONTACT != 0
     }
 
-    /// The budget or the stack ended: `toi` may be far too early.
+    /// The iterations or the stack ended: `toi` may be far too early.
     #[inline]
     pub fn exhausted(&self) -> bool {
         self.state & EXHAUSTED != 0

@@ -131,12 +131,12 @@ impl Scene {
     /// # Errors
     /// [`Error::Input`] if a mesh is refused.
     pub fn bodies(&self) -> Result<Vec<Body>, Error> {
-        let meets = if self.bodies.len() > 1 {
+        let filter = if self.bodies.len() > 1 {
             CollisionFilter::without_self_collision()
         } else {
             CollisionFilter::default()
         };
-        self.bodies.iter().map(|numbers| Ok(numbers.body()?.with_filter(meets))).collect()
+        self.bodies.iter().map(|numbers| Ok(numbers.body()?.with_filter(filter))).collect()
     }
 
     /// Returns the triangle pairs of a discrete scene, by the list or the oracle.
