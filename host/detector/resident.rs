@@ -76,9 +76,13 @@ impl Detector {
         }
     }
 
-    /// Returns the positions of all bodies on the device; `None` if nothing can meet, and nothing
-    /// was placed.
+    /// Returns the positions of all bodies on the device; `None` without a pipeline, which has the
+    /// memory in which bodies are placed.
     fn places(&mut self) -> Result<Option<Places>, Error> {
+        if self.engine.pipeline.is_none() {
+            return Ok(None);
+        }
+        // By this layout the memory is divided among the bodies.
         let layout = self.any_layout()?;
         let Some(pipeline) = &self.engine.pipeline else { return Ok(None) };
         Ok(Some(Places { all: pipeline.whereabouts()?, layout }))

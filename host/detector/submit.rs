@@ -75,7 +75,8 @@ impl Detector {
     /// The memory of the caller must not change during the call.
     ///
     /// # Errors
-    /// As for [`Detector::step`]. [`Error::InvalidArgument`]:
+    /// As for [`Detector::step`]. [`Error::OutOfMemory`] if a submission's lists do not fit.
+    /// [`Error::InvalidArgument`]:
     ///
     /// - if there is no query, or two differ in numbers alone;
     /// - if a traversal needs the host;

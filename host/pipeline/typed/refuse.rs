@@ -23,22 +23,29 @@ impl<R: Precision> QueryMemory<R> {
     }
 
     /// Grows every list that a submission found too short, by the demand of its schedule. The next
-    /// frame may have another schedule, and need less. Lists that memory has no room for stay
-    /// short, and so does everything if the answer is refused: then that frame returns the error.
-    pub(super) fn grow_all(&mut self, scene: &mut SceneMemory<R>, counters: &Counts) {
-        let is_refused = self.refuse(scene, Step::Traverse, counters).is_err()
-            || self.demand.counted(counters, &scene.device).is_err();
-        if is_refused {
-            return;
-        }
+    /// frame may have another schedule, and need less.
+    ///
+    /// # Errors
+    /// [`Error::AnswerTooLarge`], before any list grows. [`Error::OutOfMemory`] of the first list
+    /// without room; the others have grown. Device errors.
+    pub(super) fn grow_all(&mut self, scene: &mut SceneMemory<R>, counters: &Counts) -> Result<(), Error> {
+        self.refuse(scene, Step::Traverse, counters)?;
+        self.demand.counted(counters, &scene.device)?;
         let device = scene.device.of(purpose::WALK);
-        let grow = |list: &mut dyn GrowableOutput| drop(list.grow(&device, counters));
-        scene.broads[self.broad].phase.lists().into_iter().for_each(grow);
+        let mut grown = Ok(());
+        let mut grow = |list: &mut dyn GrowableOutput| {
+            let own = list.grow(&device, counters).map(drop);
+            if grown.is_ok() {
+                grown = own;
+            }
+        };
+        scene.broads[self.broad].phase.lists().into_iter().for_each(&mut grow);
         grow(&mut scene.pairs);
         for at in self.narrow_steps_at() {
-            self.narrow.lists(at, &mut scene.features).into_iter().for_each(grow);
+            self.narrow.lists(at, &mut scene.features).into_iter().for_each(&mut grow);
         }
-        self.narrow.ordered().into_iter().for_each(grow);
+        self.narrow.ordered().into_iter().for_each(&mut grow);
+        grown
     }
 
     /// Refuses a step's counted rows, before its lists grow.

@@ -46,7 +46,8 @@ pub trait Submits {
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] if a walk needs the host, or if the last placing read host
-    /// memory; device errors. It is not prepared then.
+    /// memory. [`Error::OutOfMemory`] and [`Error::AnswerTooLarge`] if a list could not grow.
+    /// Device errors. It is not prepared then.
     fn prepare(&mut self, queries: &[usize]) -> Result<bool, Error>;
     /// Returns whether it is prepared.
     fn is_prepared(&self) -> bool;
@@ -141,9 +142,15 @@ impl<R: Precision> Submits for TypedPipeline<R> {
             return Ok(None);
         }
         self.queries[query].read_ahead(&self.scene)?;
-        let Some(counters) = self.whole(query)? else {
-            self.submission = None;
-            return Ok(None);
+        let counters = match self.whole(query) {
+            Ok(Some(counters)) => counters,
+            // The frame that follows may need less memory, or divides into slices. Otherwise it
+            // returns the error.
+            Ok(None) | Err(Error::OutOfMemory { .. } | Error::AnswerTooLarge { .. }) => {
+                self.submission = None;
+                return Ok(None);
+            }
+            Err(error) => return Err(error),
         };
         let own = &mut self.queries[query];
         own.last.clone_from(&counters);
@@ -174,6 +181,9 @@ impl<R: Precision> TypedPipeline<R> {
 
     /// Returns the counters of a submitted query, if every list had room; otherwise the lists have
     /// grown. Waits.
+    ///
+    /// # Errors
+    /// Those of [`QueryMemory::grow_all`]: some lists are still too short. Device errors.
     fn whole(&mut self, query: usize) -> Result<Option<Counts>, Error> {
         let (own, scene) = (&mut self.queries[query], &mut self.scene);
         let counters = own.counters.read()?;
@@ -181,7 +191,7 @@ impl<R: Precision> TypedPipeline<R> {
             return Ok(Some(counters));
         }
         own.settled = false;
-        own.grow_all(scene, &counters);
+        own.grow_all(scene, &counters)?;
         Ok(None)
     }
 

@@ -49,6 +49,26 @@ fn a_preparation_whose_submission_is_short_is_none() {
     assert_eq!(reported(&mut pipeline), (0, false));
 }
 
+/// A list for which there is no memory ends the preparation with that error. An error that is
+/// dropped would end it as "lists are too short", after some rounds.
+#[test]
+fn a_preparation_without_memory_returns_the_error() {
+    let device = engine();
+    let (mut pipeline, at) = answered(&device);
+    let demand = pipeline.scene.pairs.demand(&pipeline.queries[at].last);
+    pipeline.scene.pairs = short(&device);
+    // Enough for the status, but less than the list with its margin of an eighth.
+    let limit = device.bytes().0 + demand * size_of::<Pair>() as u64;
+    assert!(demand > 1_000, "{demand}");
+    let limited = device.clone().with_memory_limit(limit);
+    let error = pipeline.prepare(&[at]).expect_err("no memory");
+    assert!(matches!(error, Error::OutOfMemory { .. }), "{error}");
+    assert!(!pipeline.is_prepared());
+    let _ = limited.with_memory_limit(u64::MAX);
+    pipeline.frame(at).expect("a frame");
+    assert!(pipeline.prepare(&[at]).expect("prepared") && pipeline.is_prepared());
+}
+
 /// A list that a submission found too short has grown when `collect` says so.
 #[test]
 fn a_short_submission_grows_its_lists_and_ends_the_preparation() {
