@@ -5,7 +5,7 @@ use std::env::var;
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
-    // Set by cargo. Of macOS and Windows the linkers name a library by other means.
+    // Set by cargo. The linkers of macOS and Windows name a library by other means.
     let of = |name: &str| var(name).unwrap_or_default();
     let is_elf = of("CARGO_CFG_TARGET_FAMILY").split(',').any(|family| family == "unix")
         && of("CARGO_CFG_TARGET_VENDOR") != "apple";

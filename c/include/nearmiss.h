@@ -64,7 +64,7 @@ enum NearmissCode
  {
     // Success.
     NEARMISS_OK = 0,
-    // An argument without a meaning, whatever the data: an option, a name, a kind, the number of a
+    // An argument that no data could make valid: an option, a name, a kind, the number of a
     // body, a pointer. Correct the call.
     NEARMISS_INVALID_ARGUMENT = 1,
     // Data that cannot be used: numbers of a mesh, of positions or of a pose. Correct the data.
@@ -489,9 +489,9 @@ typedef struct {
     // answered; of a prepared submission until the next update. A pose on the device is a row of
     // three numbers in `positions` and a row of four in `rotations`.
     uint32_t on_device;
-    // One row a vertex. Of a pose on the device: its translation.
+    // One row a vertex. For a pose on the device: its translation.
     NearmissRows positions[2];
-    // Of a pose on the device: its unit quaternion x, y, z, w.
+    // For a pose on the device: its unit quaternion x, y, z, w.
     NearmissRows rotations[2];
     // Poses in memory of the host.
     NearmissPose poses[2];
@@ -624,13 +624,13 @@ typedef struct {
 
 // Figures of an answer.
 typedef struct {
-    // Number of rows. Of an earliest or a distance query: 1 or 0.
+    // Number of rows. For an earliest or a distance query: 1 or 0.
     uint64_t contacts;
     // Pairs of triangles whose volumes overlap.
     uint64_t triangle_pairs;
     // Pairs that were tested.
     uint64_t candidates;
-    // Undecided pairs. Of an earliest query: 1 if its time is that of an undecided pair, else 0.
+    // Undecided pairs. For an earliest query: 1 if its time is that of an undecided pair, else 0.
     uint64_t undecided;
     // Number of reruns, because a list was too short. The answer is whole.
     uint64_t reruns;
@@ -1018,7 +1018,7 @@ NearmissCode nearmiss_detector_download_positions(NearmissDetector *detector,
                                                   size_t vertex_count,
                                                   NearmissError *error);
 
-// A query of a `NearmissQueryKind` with defaults. Of a near query, set `distance`.
+// A query of a `NearmissQueryKind` with defaults. Set `distance` of a near query.
 NearmissQuery nearmiss_query(uint32_t kind);
 
 // `count` points of three floats, without gaps.

@@ -13,7 +13,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 pub enum NearmissCode {
     /// Success.
     NEARMISS_OK = 0,
-    /// An argument without a meaning, whatever the data: an option, a name, a kind, the number of a
+    /// An argument that no data could make valid: an option, a name, a kind, the number of a
     /// body, a pointer. Correct the call.
     NEARMISS_INVALID_ARGUMENT = 1,
     /// Data that cannot be used: numbers of a mesh, of positions or of a pose. Correct the data.

@@ -1,4 +1,4 @@
-//! Where features touch, or are nearest.
+//! Points at which features touch, or are nearest.
 
 use crate::answer::{NearmissAnswer, show};
 use crate::detector::NearmissDetector;

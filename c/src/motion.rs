@@ -50,9 +50,9 @@ pub struct NearmissMotion {
     /// answered; of a prepared submission until the next update. A pose on the device is a row of
     /// three numbers in `positions` and a row of four in `rotations`.
     pub on_device: u32,
-    /// One row a vertex. Of a pose on the device: its translation.
+    /// One row a vertex. For a pose on the device: its translation.
     pub positions: [NearmissRows; 2],
-    /// Of a pose on the device: its unit quaternion x, y, z, w.
+    /// For a pose on the device: its unit quaternion x, y, z, w.
     pub rotations: [NearmissRows; 2],
     /// Poses in memory of the host.
     pub poses: [NearmissPose; 2],

@@ -1,4 +1,4 @@
-//! Notes beside an answer.
+//! Notes of an answer.
 
 use crate::answer::{NearmissAnswer, sentence, shown};
 use crate::detector::NearmissDetector;

@@ -70,7 +70,7 @@ pub struct NearmissQuery {
     pub research: NearmissResearch,
 }
 
-/// A query of a `NearmissQueryKind` with defaults. Of a near query, set `distance`.
+/// A query of a `NearmissQueryKind` with defaults. Set `distance` of a near query.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_query(kind: u32) -> NearmissQuery {
     NearmissQuery {

@@ -38,13 +38,13 @@ pub struct NearmissStages {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct NearmissSummary {
-    /// Number of rows. Of an earliest or a distance query: 1 or 0.
+    /// Number of rows. For an earliest or a distance query: 1 or 0.
     pub contacts: u64,
     /// Pairs of triangles whose volumes overlap.
     pub triangle_pairs: u64,
     /// Pairs that were tested.
     pub candidates: u64,
-    /// Undecided pairs. Of an earliest query: 1 if its time is that of an undecided pair, else 0.
+    /// Undecided pairs. For an earliest query: 1 if its time is that of an undecided pair, else 0.
     pub undecided: u64,
     /// Number of reruns, because a list was too short. The answer is whole.
     pub reruns: u64,

@@ -1,10 +1,11 @@
-//! Memory that ends in the host's own allocations. What a user can make large is asked for before (`nearmiss::memory`); what is
-//! left would abort the program, and ends it here with a message and its exit status.
+//! Host memory that ends. Allocations that a user can make large are checked before
+//! (`nearmiss::memory`). All others would abort the program; here it ends with a message and an
+//! exit status.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::io::Write;
 
-/// The system's memory. Where it ends the program does, with status 4.
+/// The system's memory. If it ends, so does the program, with status 4.
 pub struct Memory;
 
 #[global_allocator]

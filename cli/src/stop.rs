@@ -87,8 +87,8 @@ fn give_up() -> MutexGuard<'static, Unfinished> {
     unfinished
 }
 
-/// From here on the signals end the program as it is said above. Where no thread can be started
-/// they do what they do by default.
+/// From here on, signals end the program as described above. If no thread can be started, they keep
+/// their default effect.
 #[cfg(unix)]
 pub fn listen() {
     use signal_hook::consts::{SIGINT, SIGTERM};
@@ -96,7 +96,7 @@ pub fn listen() {
     let (ready, listens) = std::sync::mpsc::channel();
     let wait = move || {
         let signals = Signals::new([SIGINT, SIGTERM]);
-        // Whoever started this thread waits for it.
+        // The starter of this thread waits for it.
         let _ = ready.send(());
         let Some(signal) = signals.ok().and_then(|mut signals| signals.forever().next()) else { return };
         let _turn = give_up();

@@ -1,8 +1,8 @@
 //! Contacts as a file of VTK's PolyData (`.vtp`), which `ParaView` and `pyvista` read.
 //!
-//! Numbers are text in full, so that they read back to the same bits. Two points a contact: the nearest ones of both features. Where these
-//! are apart a line joins them, where they are one a vertex is there: VTK lists all vertices before all lines, and `row` says which row of
-//! a CSV each is.
+//! Numbers are written in full, so that they read back to the same bits. A contact has two points:
+//! the nearest ones of both features. Two distinct points are joined by a line; two equal ones are a
+//! vertex. VTK lists all vertices before all lines, and `row` is the row of each in a CSV.
 
 use nearmiss::contacts::{ContactGeometry, Kind, NearestTriangles, Rows};
 use std::fmt::Display;

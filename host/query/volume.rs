@@ -1,8 +1,8 @@
 //! The choice of a bounding volume, made from the list [`nearmiss_kernels::volumes`].
 
 use super::{QueryKind, named};
+use nearmiss_kernels::bv;
 use nearmiss_kernels::entry::Kernels;
-use nearmiss_kernels::volume;
 
 /// An action on the type of a volume that was chosen by name.
 #[doc(hidden)]

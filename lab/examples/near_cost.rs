@@ -1,4 +1,4 @@
-//! What a near query costs beside a discrete one: frames and steps, in milliseconds.
+//! Cost of a near query and of a discrete one: frames and steps, in milliseconds.
 //!
 //! ```sh
 //! cargo run --release --example near_cost -- mesh.ply             # within half of the mean edge
@@ -13,7 +13,7 @@ use nearmiss_io::MeshFile;
 use nearmiss_lab::OneQuery;
 use std::path::Path;
 
-/// Frames that are asked; the first warms up.
+/// Frames per query; the first warms up.
 const FRAMES: usize = 9;
 
 fn ask(device: &Device, body: &Body, query: Query) -> Result<(), Error> {

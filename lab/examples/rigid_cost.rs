@@ -43,7 +43,7 @@ fn sphere(rings: u32, radius: f64) -> Result<Mesh, Error> {
     Mesh::new("sphere", Positions::F32(points), faces)
 }
 
-/// Where body `k` is in a frame: on a grid whose cells are a little larger than it, drifting and turning.
+/// Pose of body `k` in a frame: it drifts and turns on a grid of slightly larger cells.
 fn pose(k: usize, frame: usize) -> Pose {
     let t = frame as f64 * 0.01;
     let phase = |n: usize| (k * n % 97) as f64;

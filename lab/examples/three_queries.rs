@@ -48,7 +48,7 @@ fn submitted(device: &Device, body: &Body, queries: &[Query; 3]) -> Result<Strin
     let memory = [points(start)?, points(end)?];
     let rows = |k: usize| {
         let buffer: &Buffer<[f32; 3]> = &memory[k];
-        // SAFETY: the buffers outlive the detector, and nobody writes them.
+        // SAFETY: the buffers outlive the detector, and no code writes them.
         unsafe { DeviceRows::new(buffer.span().addr(), buffer.len(), 12, Number::F32) }
     };
     let mut detector = Detector::new(device.clone(), body.clone())?;

@@ -1,4 +1,4 @@
-//! A detector as one thread at a time asks it, and when what was answered.
+//! A detector for one thread at a time, with a count of its answers.
 
 use crate::borrowed::Held;
 use nearmiss::Error;
@@ -26,7 +26,7 @@ pub enum Does {
     Collects(nearmiss::Query),
 }
 
-/// What one thread at a time asks.
+/// A detector that one thread at a time uses.
 pub struct Asked {
     pub detector: nearmiss::Detector,
     is_gpu: bool,
@@ -40,7 +40,7 @@ pub struct Asked {
     collected: Vec<nearmiss::Query>,
     /// Keeps the arrays of updates that a GPU may still read, until a call waits.
     pub placing: Vec<Held>,
-    /// What holds the arrays that submissions read. Dropped behind the detector, which reads them no longer then.
+    /// Arrays that submissions read. Dropped after the detector, which reads them.
     pub held: Vec<Held>,
 }
 
@@ -62,7 +62,7 @@ impl Asked {
         }
     }
 
-    /// What nobody reads any longer.
+    /// Arrays that no submission reads any longer.
     pub fn unread(&mut self) -> Vec<Held> {
         if self.detector.is_prepared() { Vec::new() } else { std::mem::take(&mut self.held) }
     }
@@ -99,7 +99,7 @@ impl Asked {
         }
     }
 
-    /// Of what is answered now.
+    /// The stamp of the current answer.
     pub fn stamp(&self) -> Stamp {
         Stamp { detector: self.number, moves: self.moves }
     }

@@ -10,9 +10,9 @@ use numpy::{PyArrayDescrMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 
-/// What keeps an array where it is.
+/// A reference that keeps an array in its place.
 pub enum Held {
-    /// What DLPack gave.
+    /// A capsule of DLPack.
     Taken { _tensor: Taken },
     /// The array itself.
     Object { _array: Py<PyAny> },
@@ -53,7 +53,7 @@ pub fn on_gpu(
         ));
     };
     let (shape, held) = match told {
-        // Where it says which stream makes the data that must be ours: nothing here waits for another.
+        // If it names the stream that makes the data, that must be ours: nothing here waits for another.
         Some((_, Some(theirs))) if theirs != stream.max(1) => {
             return Err(choice(
                 format!("{what} are of stream {theirs}, and the detector is on stream {stream}"),
@@ -99,7 +99,7 @@ pub fn on_cpu(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Option<Borrowed
     if !fits || shape[0] == 0 {
         return Ok(None);
     }
-    // Of numpy's own struct: what a subclass says of itself may be anything.
+    // The address is from numpy's own struct: a subclass may describe itself wrongly.
     // SAFETY: the array is alive, and the interpreter is held.
     let address = unsafe { (*_PyArray_GET_ITEM_DATA(array.as_array_ptr())).data } as u64;
     let shape = Shape {
@@ -150,8 +150,9 @@ fn rows(of: &Shape, width: i64, what: &str) -> PyResult<DeviceRows> {
             "give a contiguous array: numbers of a row side by side",
         ));
     };
-    // SAFETY: the array's own description says that rows of such numbers lie there; what is returned holds it, and the detector lets
-    // go of it when the work is done. That nobody writes them meanwhile is told to the caller.
+    // SAFETY: by the array's own description, rows of such numbers are there. The returned value
+    // holds the array, and the detector releases it when the work is done. The documentation
+    // requires of the caller that no other code writes them meanwhile.
     unsafe { DeviceRows::new(of.address, count, bytes, number) }.map_err(raised)
 }
 

@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 pub struct Columns(Mutex<HashMap<&'static str, Py<PyAny>>>);
 
 impl Columns {
-    /// The column of that name: the same array each time, which nobody may write.
+    /// The column of that name: the same read-only array each time.
     pub fn get<'py, T>(
         &self,
         py: Python<'py>,
@@ -25,7 +25,7 @@ impl Columns {
         }
         // Made without the lock: Python may run others meanwhile, and the first to come stays.
         let made = make()?.into_any();
-        // What one holder writes the others would read.
+        // All holders share it: a write by one would change the others' data.
         made.call_method1("setflags", (false,))?;
         let mut columns = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         Ok(columns.entry(name).or_insert_with(|| made.unbind()).bind(py).clone())

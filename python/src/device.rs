@@ -65,7 +65,8 @@ impl Device {
         let handle = stream.as_ref().map(handle_of).transpose()?;
         let opened = py.detach(|| match (gpu, handle) {
             (Some(gpu), _) => nearmiss::Device::gpu(gpu),
-            // SAFETY: `nearmiss.Device` tells its caller what a stream must be; the object that was given is held.
+            // SAFETY: the documentation of `nearmiss.Device` says what a stream must be. The given
+            // object is held.
             (None, Some(handle)) => unsafe {
                 nearmiss::Device::from_stream(null_mut(), handle as *mut c_void)
             },

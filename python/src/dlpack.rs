@@ -23,7 +23,7 @@ pub const UINT: u8 = 1;
 /// See [`INT`].
 pub const FLOAT: u8 = 2;
 
-/// What a capsule is called until somebody takes what it holds, and then.
+/// The name of a capsule until its tensor is taken, and the name after that.
 const FRESH: &CStr = c"dltensor";
 const USED: &CStr = c"used_dltensor";
 
@@ -72,7 +72,8 @@ unsafe impl Sync for Taken {}
 
 impl Drop for Taken {
     fn drop(&mut self) {
-        // SAFETY: it was taken from its capsule, whose new name tells that; its deleter is called once.
+        // SAFETY: it was taken from its capsule, as the capsule's new name shows. Its deleter is
+        // called once.
         unsafe {
             if let Some(deleter) = self.0.as_ref().deleter {
                 deleter(self.0.as_ptr());
@@ -81,7 +82,7 @@ impl Drop for Taken {
     }
 }
 
-/// What an array says of itself; strides count elements.
+/// Description of an array; strides count elements.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Shape {
     pub address: u64,
@@ -103,7 +104,7 @@ impl Taken {
         Ok(Taken(pointer.cast()))
     }
 
-    /// Where it lies and how it is shaped.
+    /// Its address and shape.
     pub fn shape(&self) -> PyResult<Shape> {
         // SAFETY: it lives until this is dropped.
         let tensor = unsafe { &self.0.as_ref().tensor };
@@ -135,7 +136,7 @@ pub fn packed(shape: &[i64]) -> Vec<i64> {
     strides
 }
 
-/// What a capsule of ours points to: the struct first, so that a pointer to one is a pointer to the other.
+/// Target of our capsules. The struct is first, so a pointer to one is a pointer to the other.
 #[repr(C)]
 struct Given {
     managed: ManagedTensor,
@@ -165,7 +166,7 @@ pub fn capsule<'py>(py: Python<'py>, of: &Shape, owner: Py<PyAny>) -> PyResult<B
     // SAFETY: the pointer is not null, the name lives as long as the program, and the destructor frees the box.
     let made = unsafe { ffi::PyCapsule_New(given.cast(), FRESH.as_ptr(), Some(untaken)) };
     if made.is_null() {
-        // SAFETY: nobody else has it.
+        // SAFETY: no other code has it.
         unsafe { freed(given.cast()) };
     }
     // SAFETY: a new reference, or null and an exception.
@@ -174,14 +175,16 @@ pub fn capsule<'py>(py: Python<'py>, of: &Shape, owner: Py<PyAny>) -> PyResult<B
 
 /// Frees an array of ours.
 unsafe extern "C" fn freed(managed: *mut ManagedTensor) {
-    // Whoever has it may be no thread of Python's. Where the interpreter is ending it is left to the system: nothing may unwind here.
+    // The calling thread may be unknown to Python. If the interpreter is ending, the memory is left
+    // to the system: nothing may unwind here.
     let _ = Python::try_attach(|_| {
-        // SAFETY: it is the box of `capsule`, freed once: by whoever took it, or by the capsule where nobody did.
+        // SAFETY: it is the box of `capsule`, freed once: by the taker of the tensor, or by the
+        // capsule if there was none.
         drop(unsafe { Box::from_raw(managed.cast::<Given>()) });
     });
 }
 
-/// Frees what nobody has taken.
+/// Frees a tensor that was not taken.
 unsafe extern "C" fn untaken(capsule: *mut ffi::PyObject) {
     // SAFETY: Python gives a capsule of ours; a null answer means that it is used, or called otherwise.
     unsafe {

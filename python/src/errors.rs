@@ -36,7 +36,7 @@ pub fn raised(error: Error) -> PyErr {
     }
 }
 
-/// Warns of a mesh that has not all that its file has. Where warnings are errors this is one.
+/// Warns of a mesh without some parts of its file. Returns an error if warnings are errors.
 pub fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
     let text = std::ffi::CString::new(text.replace('\0', "\\0"))?;
     PyErr::warn(py, &py.get_type::<MeshWarning>(), &text, 1)

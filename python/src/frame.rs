@@ -25,7 +25,7 @@ pub struct Named {
     pub vertices: usize,
 }
 
-/// Whose positions these are: on which device, what messages call them, and how many there may be.
+/// Owner of positions: its device, its name in messages, and its number of vertices.
 #[derive(Clone, Copy)]
 struct Of<'a> {
     device: &'a Device,
@@ -46,7 +46,7 @@ enum End {
 }
 
 impl Frame {
-    /// Of bodies and where Python says that they are.
+    /// A frame of bodies and their given places.
     pub fn of(inputs: Vec<(Named, Bound<'_, PyAny>)>, device: &Device) -> PyResult<Frame> {
         let mut frame = Frame::default();
         for (Named { id, name, vertices }, input) in inputs {

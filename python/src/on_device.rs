@@ -19,28 +19,29 @@ use pyo3::types::{PyBytes, PyDict, PyTuple};
 pub struct DeviceArray {
     shape: Shape,
     device: Device,
-    /// Whose memory it is, and how much that had been asked when it lay here.
+    /// The detector that owns the memory, and its count of answers when the array was made.
     detector: Py<Detector>,
     asked: u64,
 }
 
 impl DeviceArray {
-    /// How many bytes there are from the first number to the last.
+    /// Number of bytes from the first number to the last.
     fn bytes(&self) -> usize {
         let Shape { dtype, shape, strides, .. } = &self.shape;
         let last: i64 = shape.iter().zip(strides).map(|(n, stride)| (n - 1) * stride).sum();
         if shape.contains(&0) { 0 } else { (last as usize + 1) * usize::from(dtype.bits / 8) }
     }
 
-    /// A copy in memory of Python's, of an array of the host: its memory may go while somebody holds it.
+    /// A copy of an array of the host in Python's memory: the original may be freed while the copy is
+    /// held.
     fn copied<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let (address, bytes) = (self.shape.address, self.bytes());
         let copy = move || {
-            // Where nothing is, there need not be an address.
+            // An empty array may have no address.
             if bytes == 0 {
                 return Vec::new();
             }
-            // SAFETY: the answer is there, and the lock is held under which alone it moves.
+            // SAFETY: the answer is there, and it moves only under the lock, which is held.
             unsafe { std::slice::from_raw_parts(address as *const u8, bytes) }.to_vec()
         };
         let copy = self.detector.get().with_answer(py, self.asked, copy)?;
@@ -73,7 +74,7 @@ impl DeviceArray {
             return capsule(py, &shape, copy.into_any().unbind());
         };
         self.detector.get().with_answer(py, self.asked, || ())?;
-        // -1 asks for no order.
+        // -1: no order is needed.
         if stream != Some(ours.max(1) as i64) && stream != Some(-1) {
             self.detector
                 .get()
@@ -92,9 +93,7 @@ impl DeviceArray {
     #[getter]
     fn __cuda_array_interface__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let Some(stream) = self.device.stream() else {
-            return Err(pyo3::exceptions::PyAttributeError::new_err(
-                "an array of the host: take it by DLPack",
-            ));
+            return Err(pyo3::exceptions::PyAttributeError::new_err("the array is on the CPU; use DLPack"));
         };
         self.detector.get().with_answer(py, self.asked, || ())?;
         let Dtype { code, bits, .. } = self.shape.dtype;
@@ -106,7 +105,7 @@ impl DeviceArray {
         };
         let told = PyDict::new(py);
         told.set_item("version", 3)?;
-        // Whoever writes it spoils that answer and no other; torch refuses what is read-only.
+        // A write changes this answer and no other. Torch refuses read-only arrays.
         told.set_item("data", (self.shape.address, false))?;
         told.set_item("shape", PyTuple::new(py, &self.shape.shape)?)?;
         told.set_item("strides", PyTuple::new(py, self.shape.strides.iter().map(|stride| stride * size))?)?;

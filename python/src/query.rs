@@ -96,7 +96,7 @@ pub fn set<'py>(
     value.map_or(Ok(()), |value| named.set_item(name, value))
 }
 
-/// What Python's pickle makes an object of again: a function and its arguments.
+/// A function and its arguments, from which Python's pickle makes an object.
 pub type Remade<'py> = (Bound<'py, PyAny>, Bound<'py, PyTuple>);
 
 /// An object of that class, made of these arguments and named ones.

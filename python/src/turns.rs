@@ -89,7 +89,7 @@ impl Detector {
 
     /// The same, with what is known of earlier calls.
     pub fn look_at<T: Send>(&self, py: Python<'_>, look: impl FnOnce(&Asked) -> T + Send) -> PyResult<T> {
-        // Mostly nobody has the lock. Who has it may wait for the interpreter.
+        // The lock is mostly free. Its holder may wait for the interpreter.
         if let Ok(one) = self.one.try_lock() {
             return Ok(look(&one));
         }
@@ -105,7 +105,8 @@ impl Detector {
         })
     }
 
-    /// Never while the interpreter is held: whoever has the lock may wait for that. Before the device's turn.
+    /// Never called while the interpreter is held: the lock's holder may wait for that. Called before
+    /// the device's turn.
     pub fn locked(&self) -> MutexGuard<'_, Asked> {
         self.one.lock().unwrap_or_else(PoisonError::into_inner)
     }

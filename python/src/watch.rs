@@ -1,5 +1,5 @@
-//! Work that a signal ends: on the main thread, where Python handles signals, a frame runs beside
-//! the thread that waits for it.
+//! Work that a signal ends. Python handles signals on the main thread, so a frame runs on another
+//! thread, and the main thread waits for it.
 
 use nearmiss::{Error, Interrupt};
 use pyo3::prelude::*;
@@ -14,10 +14,10 @@ const PERIOD: Duration = Duration::from_millis(50);
 /// How often a lock is tried that another thread has.
 const TURN: Duration = Duration::from_millis(1);
 
-/// What work and the thread that waits for it know of each other.
+/// State that work shares with the thread that waits for it.
 #[derive(Default)]
 pub struct Watch {
-    /// A signal has come: whoever waits for a lock gives up.
+    /// A signal has come: threads that wait for a lock give up.
     cancelled: AtomicBool,
     /// The work has all its locks: a trigger ends it, and no other thread's.
     begun: AtomicBool,
@@ -77,7 +77,7 @@ pub fn is_main(py: Python<'_>) -> PyResult<bool> {
 /// SIGINT's does, ends it within some 50 ms and what `interrupt` takes.
 ///
 /// # Errors
-/// What the handler of a signal has raised.
+/// The exception that a signal's handler raised.
 pub fn watched<T: Send>(
     py: Python<'_>,
     interrupt: &Interrupt,
@@ -127,7 +127,7 @@ pub fn watched<T: Send>(
 /// to is dropped.
 ///
 /// # Errors
-/// What the handler of a signal has raised.
+/// The exception that a signal's handler raised.
 pub fn left_behind<T: Send + 'static>(
     py: Python<'_>,
     work: impl Fn() -> T + Send + Sync + 'static,

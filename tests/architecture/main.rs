@@ -16,7 +16,7 @@ mod sources;
 mod words;
 
 use nearmiss_kernels::entry::TABLE;
-use nearmiss_kernels::{abi, volume};
+use nearmiss_kernels::{abi, bv};
 use sources::{NONE, Source, after, files, lines, planted, rust};
 use support::ptx;
 

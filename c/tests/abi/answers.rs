@@ -204,7 +204,7 @@ fn fault(
     (away < -1e-9).then(|| format!("a normal {:?} towards feature b", geometry.normal))
 }
 
-/// What crosses at the start has no time of contact, and is not free; the notes say so.
+/// Triangles that cross at the start have no time of contact, and are not free. The notes say so.
 #[test]
 fn what_crosses_at_the_start_is_counted() {
     let corners = [

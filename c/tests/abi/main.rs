@@ -11,7 +11,7 @@ use nearmiss::mesh::Positions;
 use nearmiss_c::*;
 use std::mem::MaybeUninit;
 
-/// What a call wrote, and how it ended.
+/// A call's output, and how it ended.
 type Told<T> = Result<T, (NearmissCode, String)>;
 
 /// Calls with an error of the caller.

@@ -22,7 +22,7 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Of a header's text.
+    /// The layout in a header's text.
     ///
     /// # Panics
     /// For a declaration of another form than cbindgen's.
@@ -118,7 +118,7 @@ impl Layout {
     }
 }
 
-/// Whether a header may stand beside a committed list: the same list, or another number.
+/// Whether a header agrees with a committed list: the same list, or another number.
 ///
 /// # Errors
 /// The first line that changed without a new number.

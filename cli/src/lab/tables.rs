@@ -24,7 +24,7 @@ pub fn tables(args: &TablesArgs) -> Result<ExitCode, Error> {
     if args.table.contains(&Table::Scale) {
         scale(args, &device, &mut figures)?;
     }
-    // Asked for alone, that is all.
+    // If it is the only table, nothing else is needed.
     let of_animations = |table: &Table| !matches!(table, Table::Bodies | Table::Scale);
     let all = args.table.is_empty() || args.table.iter().any(of_animations);
     for (name, triangles) in if all { scenes(args)? } else { Vec::new() } {

@@ -39,7 +39,7 @@ pub struct Target {
 }
 
 impl Target {
-    /// Looks whether the file can be written. What it holds stays.
+    /// Checks that the file can be written. Its content stays.
     ///
     /// # Errors
     /// [`Error::Output`].

@@ -1,4 +1,4 @@
-//! Packing by gzip. What fails on the way is no whole stream.
+//! Packing by gzip. A stream that fails is not completed.
 
 use flate2::Compression;
 use flate2::write::GzEncoder;

@@ -73,12 +73,14 @@ pub fn probe(folder: &Path) -> io::Result<()> {
     temporary(folder)?.close()
 }
 
-/// A new file in a folder, by a name that no other has, which goes when it is dropped. Who may read it is as of any new file.
+/// A new file in a folder, with a unique name. It is deleted when it is dropped. Its permissions are
+/// those of any new file.
 fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
     stop::making(|| Builder::new().prefix(".nearmiss-").make_in(folder, |path| File::create_new(path)))
 }
 
-/// Writes into what is open. Of a failed regular file nothing is left: half an answer would look like one.
+/// Writes into an open file. A regular file that failed is deleted: half an answer would look like
+/// one.
 ///
 /// # Errors
 /// Those of `put` and of the file.
@@ -155,7 +157,7 @@ mod tests {
     use super::{ErrorKind, PersistError, fs, io, replace, temporary};
     use std::io::Write;
 
-    /// A whole file meets one that keeps its name: what it says, what is there then, and how many files.
+    /// A whole file whose name is taken: the message, the content after that, and the number of files.
     fn kept(kind: ErrorKind) -> (Result<(), String>, String, usize) {
         let folder = tempfile::tempdir().expect("a folder");
         let real = folder.path().join("a.csv");

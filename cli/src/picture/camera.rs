@@ -1,4 +1,5 @@
-//! From points in space to places in the picture. What is parallel stays so: no perspective, so lengths can be compared.
+//! From points in space to places in the picture. Parallel lines stay parallel: without perspective,
+//! lengths can be compared.
 
 use super::{cross, dot, scaled, unit};
 
@@ -21,8 +22,8 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Looks from `view` at those points, with `up` up where the two are not parallel; both of length 1. What is framed are the points of
-    /// `framed`, all where it has none.
+    /// Looks from `view` at those points, with `up` up if the two are not parallel; both of length 1.
+    /// The frame holds the points of `framed`, or all points if it has none.
     pub fn new(
         points: impl Iterator<Item = [f64; 3]> + Clone,
         framed: impl Iterator<Item = [f64; 3]> + Clone,

@@ -53,7 +53,8 @@ fn fault_in_motion(found: &Answers, truth: &Answers) -> Option<String> {
         .then(|| format!("{:?} rejected and left for {:?}", counts(found), counts(truth)))
 }
 
-/// Asks grids of triangles and built contacts of both machines, by every solver, in both precisions.
+/// Queries grids of triangles and built contacts on both machines, by every solver, in both
+/// precisions.
 ///
 /// # Errors
 /// Those of the devices.

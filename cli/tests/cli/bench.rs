@@ -40,7 +40,7 @@ impl Tiny {
         tiny
     }
 
-    /// The arguments that ask it, and more.
+    /// The arguments of its query, and more.
     fn args<'a>(&'a self, more: &[&'a str]) -> Vec<&'a str> {
         let [t0, t1] = &self.mesh;
         let own = ["lab", "bench", "--case", "soup-moving_t0", "--mesh", t0, t1, "--backend", "cpu"];
@@ -68,7 +68,7 @@ impl Tiny {
         self.folder.write("planted.csv", &text)
     }
 
-    /// What is printed, and what is said, where a comparison ends with status 4.
+    /// Standard output and the message of a comparison that ends with status 4.
     fn fault(&self, more: &[&str]) -> [String; 2] {
         let output = run(&self.args(more));
         assert_eq!(output.status.code(), Some(4), "{more:?}: {}", err(&output));
@@ -166,11 +166,11 @@ fn a_frame_that_takes_too_long_is_a_fault() {
                 "{said}"
             );
             assert!(printed.matches("FAULT ").count() == 1, "{printed}");
-            // Told, and no fault without a limit.
+            // Reported, and no fault without a limit.
             assert!(ok(&tiny.args(&["--against", &planted])).contains("now/earlier"));
         }
     }
-    // Of a stage alone there is no limit.
+    // A single stage has no limit.
     let planted = tiny.planted(&[("stage", "fit")], &[("median_ms", "0.000001"), ("low_ms", "0")]);
     ok(&tiny.args(&["--against", &planted, "--limit", "100"]));
 }
@@ -183,10 +183,10 @@ fn what_only_one_has_is_told() {
     let text = ok(&against);
     assert!(text.contains("planted.csv: soup-moving_t0, near\n") && text.contains("not in "), "{text}");
     assert!(text.contains("planted.csv: soup-moving_t0, far\n") && text.contains("only in "), "{text}");
-    // What is not chosen is not missed.
+    // Rows that are not chosen are not missed.
     let text = ok(&[&against[..], &["--question", "discrete"]].concat());
     assert!(!text.contains("only in ") && !text.contains("not in "), "{text}");
-    // A file that has nothing of what is asked would pass whatever it says.
+    // A file without any chosen row would always pass.
     let near = [&against[..], &["--question", "near"]].concat();
     assert!(refused(2, &near).contains("--against has no effect"));
     tiny.planted(&[("question", "near")], &[("case", "gone")]);

@@ -1,4 +1,4 @@
-//! What the program says where an answer is less than was asked, as text and as JSON.
+//! Caveats of the program's answers, as text and as JSON.
 
 use super::ok;
 use support::folder::Folder;

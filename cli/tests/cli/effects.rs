@@ -219,7 +219,7 @@ fn every_option_changes_something_or_is_refused() {
         ("scene", vec!["soup", "--triangles", "30", "--out", &dir], no.clone(), vec!["--contact"]),
         ("scene", vec!["n-body", "--triangles", "400", "--out", &dir], no.clone(), vec!["--contact"]),
         ("scene", vec!["soup", "--triangles", "30"], no.clone(), vec!["--out", &dir]),
-        // What takes long: refusals.
+        // Slow options: refusals.
         ("bench", vec!["--case", "draped", "--backend", "cuda"], no.clone(), vec!["--threads", "1"]),
         ("bench", vec!["--case", "lace"], no.clone(), vec!["--case", "draped", "--mesh", &t0]),
         ("tables", vec!["--table", "6.12", "--backend", "cuda"], no.clone(), vec!["--threads", "1"]),
@@ -239,7 +239,7 @@ fn every_option_changes_something_or_is_refused() {
     let silent: Vec<String> = pairs.iter().filter_map(|pair| is_silent(pair, &folder)).collect();
     assert!(silent.is_empty(), "{}", silent.join("\n"));
 
-    // What does the same is named.
+    // Options without an effect are named.
     let planted: [Pair; 2] = [
         ("detect", still.clone(), no.clone(), vec!["--seed", "1"]),
         ("detect", still, no, vec!["--discrete"]),
@@ -269,7 +269,7 @@ fn every_option_changes_something_or_is_refused() {
         let elsewhere = ELSEWHERE.iter().filter(|(other, ..)| *other == command);
         tried.extend(elsewhere.flat_map(|(_, options, _)| options.iter().map(|option| (*option).to_owned())));
         if command == "explain" {
-            // `explain.rs` asks files of queries and points.
+            // `explain.rs` tests files of queries and points.
             tried.extend(["queries", "row", "points", "between"].map(str::to_owned));
         }
         let missing: Vec<String> =

@@ -1,4 +1,4 @@
-//! SIGINT and SIGTERM: status 130 and 143, one line, no half file, whatever the program does.
+//! SIGINT and SIGTERM during any work: status 130 and 143, one line, no half file.
 
 use super::Folder;
 use std::io::Read;

@@ -1,4 +1,4 @@
-//! Files that are there: they stay until their successors are whole, whoever else has files beside them.
+//! Existing files stay until their successors are whole, also in folders that others use.
 
 use super::{Folder, err, ok, refused, run};
 use flate2::read::GzDecoder;
@@ -89,7 +89,7 @@ fn unpacked(path: &str) -> std::io::Result<String> {
     GzDecoder::new(fs::File::open(path)?).read_to_string(&mut text).map(|_| text)
 }
 
-/// What fails in the middle: standard output is full when the first of three frames is told.
+/// A failure in the middle: standard output is full when the first of three frames is printed.
 #[test]
 fn half_an_answer_does_not_look_like_one() {
     let folder = Folder::new("half");
@@ -182,7 +182,7 @@ fn what_is_read_is_not_written_over() {
         assert!(said.contains("would overwrite ") && said.contains("which is read"), "{args:?}: {said}");
         assert!(fs::read(&mesh).expect("a mesh") == before, "{args:?}");
     }
-    // Of another mesh it may be replaced.
+    // The file may be replaced if it belongs to another mesh.
     ok(&["detect", &other, "--out-mesh", &links[0]]);
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Folder, ok, run, summary};
 
-/// A rod over a triangle, and a point beside it.
+/// A rod over a triangle, and a point next to it.
 const MESH: &str = "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 1\nv 2 1 1\nf 1 2 3\nf 4 5 5\n";
 
 #[test]
@@ -15,7 +15,7 @@ fn near_features_are_told() {
         text.contains("near by bounded") && text.starts_with("2 pairs within 1, 2 undecided; "),
         "{text}"
     );
-    // At the distance itself, to the bit: rounding could not tell them from such that are farther.
+    // At the distance itself, to the bit: rounding cannot separate them from farther pairs.
     assert!(text.contains("caveat: 2 pairs listed, within the distance or by a rounding"), "{text}");
     let all = summary(&[&asked[..], &["--json"]].concat());
     assert_eq!(

@@ -69,7 +69,7 @@ fn notes_are_told_and_strict_refuses_them() {
         }
         let explained = run(&["explain", &mesh, "--tt", "0", "1"]);
         assert!(explained.status.success() && err(&explained).contains(&said), "{}", err(&explained));
-        // Of several steps they are told once.
+        // Several steps print them once.
         let steps = run(&["detect", &mesh, &mesh, &mesh, "--json"]);
         assert_eq!(err(&steps).matches(&said).count(), 1, "{}", err(&steps));
         assert!(refused(3, &["detect", &mesh, &mesh, &mesh, "--strict"]).contains("mesh.obj: "));

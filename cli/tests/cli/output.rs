@@ -1,4 +1,4 @@
-//! What cannot be written: known before the work, said, and exit 4.
+//! Output that cannot be written: found before the work, reported, and exit 4.
 
 use super::{Folder, err, ok, out, refused, run};
 use std::io::Read;
@@ -96,7 +96,7 @@ fn standard_output_that_is_full_or_closed_is_an_error() {
         assert_eq!(child.wait().expect("an end").code(), Some(4), "{args:?}: {text}");
         assert!(text.contains("standard output: cannot be written: "), "{args:?}: {text}");
     }
-    // Where nobody can be told, the status still tells.
+    // If no message can be printed, the status is still right.
     assert_eq!(shell("\"$0\" \"$@\" > /dev/full 2> /dev/full", &GRID).status.code(), Some(4));
     assert_eq!(shell("\"$0\" \"$@\" 2> /dev/full", &["detect", "no.ply"]).status.code(), Some(3));
 }
@@ -107,7 +107,7 @@ fn where_to_write_is_looked_at_before_the_work() {
     let (file, nowhere) = (folder.write("file", ""), folder.path("no/such/folder/a.csv"));
     let missing = folder.path("missing.ply");
     let below = format!("{file}/below");
-    // The meshes that are missing are never asked for.
+    // Missing meshes are never opened.
     assert!(refused(4, &["detect", &missing, "--out", &nowhere]).contains("a.csv: cannot be written"));
     let tables = ["lab", "tables", "--mesh", &missing, &missing, "--out", &below];
     assert!(refused(4, &tables).contains("cannot be written"));

@@ -2,7 +2,8 @@
 
 use super::{Folder, ok, refused};
 
-/// Two triangles across each other around the origin, and one alone beside them, towards the right as one looks along y.
+/// Two triangles across each other around the origin, and a single one to their right, looking along
+/// y.
 const MESH: &str = "v -3 0 -3\nv 3 0 -3\nv 0 0 3\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nv 9 0 -3\nv 15 0 -3\nv 12 0 3\n\
                     f 1 2 3\nf 4 5 6\nf 7 8 9\n";
 
@@ -139,7 +140,7 @@ fn a_scene_of_bodies_is_drawn_where_they_are() {
 #[test]
 fn bodies_are_drawn_where_they_are_at_a_time() {
     let folder = Folder::new("picture-time");
-    // One that falls by 8 beside one that rests; 18 wide in nine tenths of 200 pixels.
+    // One that falls by 8 next to one that rests; 18 wide in nine tenths of 200 pixels.
     let mesh = |x: f64, z: f64| format!("v {x} 0 {z}\nv {} 0 {z}\nv {x} 0 {}\nf 1 2 3\n", x + 2.0, z + 2.0);
     let rest = "v -2 1 -4\nv 16 1 -4\nv 16 1 -3.9\nf 1 2 3\n";
     let [from, to, rest] = [("from", mesh(0.0, 4.0)), ("to", mesh(0.0, -4.0)), ("rest", rest.to_owned())]
@@ -195,7 +196,7 @@ fn what_cannot_be_drawn_is_refused_before_the_work() {
     let nowhere = folder.path("no/a.png");
     assert!(refused(4, &["picture", "no.ply", "--out", &nowhere]).contains("no/a.png: cannot be written"));
     assert!(refused(3, &["picture", "no.ply", "--out", &out]).contains("no.ply"));
-    // What was there stays where the work fails.
+    // The old file stays if the work fails.
     folder.write("a.png", "before");
     refused(3, &["picture", &folder.path("no.ply"), "--out", &out]);
     assert_eq!(folder.read("a.png"), "before");

@@ -1,10 +1,10 @@
-//! Where contacts are: `--geometry`, `.vtp`, `--out-mesh`, `.gz`; and what shells and manuals know.
+//! Places of contacts: `--geometry`, `.vtp`, `--out-mesh`, `.gz`. Completions and manuals.
 
 use super::{Folder, ok, refused};
 use flate2::{Compression, read::GzDecoder, write::GzEncoder};
 use std::io::{Read, Write};
 
-/// A rod over a triangle, and a point beside it.
+/// A rod over a triangle, and a point next to it.
 const MESH: &str = "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 1\nv 2 1 1\nf 1 2 3\nf 4 5 5\n";
 
 fn packed(text: &[u8]) -> Vec<u8> {
@@ -20,7 +20,7 @@ fn array(vtp: &str, name: &str) -> Vec<f64> {
     text.split_whitespace().map(|x| x.parse().expect("a number")).collect()
 }
 
-/// What follows the head of a PLY that ends with `line`.
+/// The data of a PLY whose head ends with `line`.
 fn behind<'a>(ply: &'a [u8], line: &str) -> &'a [u8] {
     let head = format!("{line}end_header\n").into_bytes();
     let at = ply.windows(head.len()).position(|part| part == head).expect("such a head");

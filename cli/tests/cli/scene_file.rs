@@ -34,12 +34,12 @@ fn a_rigid_body_moves_as_its_vertices_would() {
         assert!(a["earliest_toi"].as_f64().is_some_and(|toi| toi <= 0.5), "{a}");
         assert_eq!((a["frames"].as_u64(), a["notes"].as_array().map(Vec::len)), (Some(2), Some(0)), "{a}");
     }
-    // What is given to files of meshes is given to those of scenes.
+    // Options for mesh files also apply to scene files.
     let files = ["parts/flat.obj", "parts/tip_up.obj", "parts/tip_down.obj"].map(|name| folder.path(name));
     let [flat, up, down] = files.each_ref().map(String::as_str);
     let two = summary(&["detect", flat, "--with", up, down, "--json"]);
     assert_eq!(ask(vertices, &[])["hash"], two["hash"]);
-    // Frames at rest are asked one by one.
+    // Frames at rest are queried one by one.
     for text in [poses, vertices] {
         let found = ask(text, &["--discrete"]);
         let contacts: Vec<_> =
@@ -142,7 +142,7 @@ fn rows_name_bodies() {
         assert!(at > 1, "{question:?}");
     }
     assert!(ok(&["lab", "plan", &scene]).contains("continuous, within and between bodies"));
-    // Of one frame there is no column of steps, and a summary as of meshes.
+    // One frame has no column of steps, and a summary as for meshes.
     ok(&["detect", &beside(&folder, "mesh = \"parts/tip_down.obj\""), "--out", &csv, "--repeat", "2"]);
     assert_eq!(folder.read("a.csv"), "body_a,body_b,tri_a,tri_b\nflat,tip,0,0\n");
     ok(&["detect", &beside(&folder, "mesh = \"parts/tip_down.obj\""), "--out", &csv, "--file-faces"]);
@@ -246,7 +246,7 @@ fn many_bodies_are_read_in_their_own_time() {
     let (file, start) = (folder.write("many.toml", &all), std::time::Instant::now());
     let text = refused(3, &["detect", &file]);
     assert!(text.contains("body \"7\" (line 300001) has the name of body \"7\" (line 22)"), "{text}");
-    // Each beside each of the others would take minutes.
+    // Each compared with each of the others would take minutes.
     assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
 }
 

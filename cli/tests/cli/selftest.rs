@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 
 #[test]
 fn the_first_lines_come_before_the_work_is_done() {
-    // Thousands of cases a family: minutes, of which nobody waits for more than the first lines.
+    // Thousands of cases a family take minutes; the test reads the first lines.
     let mut child = Command::new(env!("CARGO_BIN_EXE_nearmiss"))
         .args(["selftest", "--backend", "cpu", "--triangles", "300", "--cases", "1000000"])
         .stdout(Stdio::piped())

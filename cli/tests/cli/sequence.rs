@@ -42,7 +42,7 @@ fn each_step_is_answered_as_alone() {
             assert_eq!(step["step"], at);
             contacts += one["contacts"].as_u64().expect("a number");
         }
-        // A tree built anew finds the same.
+        // A rebuilt tree finds the same.
         let anew = summary(&with(&files, &[&more[..], &["--rebuild-every", "2"]].concat()));
         let hashes = |all: &Value| -> Vec<Value> {
             all["steps"].as_array().expect("steps").iter().map(|step| step["hash"].clone()).collect()
@@ -129,7 +129,7 @@ fn another_mesh_rests_or_has_as_many_frames() {
     assert_eq!(tois(&[&floor, &floor, &floor, "--with", &b0, &b1, &b2, "--earliest"]), alone);
     let text = refused(2, &["detect", &b0, &b1, &b2, "--with", &floor, &floor]);
     assert!(text.contains("equal numbers of frames, got 3 and 2; give as many files"), "{text}");
-    // What stands still between two frames is said.
+    // A step without motion is reported.
     let text = ok(&["detect", &b0, &b0, &b1, "--with", &floor]);
     assert!(text.contains("step 0: ") && text.matches("both frames are the same").count() == 1, "{text}");
 }

@@ -18,7 +18,7 @@ fn ok(args: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
-/// What the program says when it refuses.
+/// The message of a refusal.
 fn refused(code: i32, args: &[&str]) -> String {
     let output = run(args);
     assert_eq!(output.status.code(), Some(code), "{args:?}");

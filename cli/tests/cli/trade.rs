@@ -51,7 +51,7 @@ fn a_small_trade_has_every_part() {
     for bv in ["aabb", "linear", "obb"] {
         assert!(of("choices", "bv", bv) >= 2, "{bv}");
     }
-    // Positions cast to f32 far from the origin ask another question, and that shows.
+    // Positions cast to f32 far from the origin are another scene, and that shows.
     let cast =
         |row: &&Value| row["precision"] == "f32 cast" && row["solver"] == "certified" && row["at"] == 1e5;
     let far = rows(&all, "sweeps").iter().find(cast).expect("a row");

@@ -58,7 +58,7 @@ pub const NAMES: [&str; 12] = [
 pub const FORMULAS: [&str; 8] =
     ["balls", "draped", "grid", "identical", "line", "single", "soup", "soup-moving"];
 
-/// Names of scenes with random numbers: they depend on the seed.
+/// Names of scenes with random numbers, which follow from a seed.
 pub const SEEDED: [&str; 7] =
     ["balls", "cloth-ball", "flamenco", "n-body", "princess", "soup", "soup-moving"];
 

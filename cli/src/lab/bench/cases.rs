@@ -25,8 +25,8 @@ pub struct Generated {
     make: fn() -> Result<Scene, Error>,
 }
 
-/// The list. What stands under a name never changes, so that files of figures can be compared: another scene or size gets
-/// another name.
+/// The list. A name keeps its scene and size, so that files of figures can be compared: another
+/// scene or size gets another name.
 pub const GENERATED: [Generated; 7] = [
     Generated {
         name: "draped",

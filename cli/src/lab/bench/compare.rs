@@ -44,8 +44,9 @@ pub fn may_limit(now: &Machine, earlier: &Earlier) -> Result<(), Error> {
     })
 }
 
-/// Puts the earlier times beside the figures; the faults, answers first. What the file has of all that is not `chosen`, by case
-/// and question, is not missed. A frame, or the wait for it, is too slow where it takes more than `limit` times the earlier.
+/// Adds the earlier times to the figures. Returns the faults, answers first. Rows of the file that
+/// are not `chosen`, by case and question, are not missed. A frame, or the wait for it, is too slow
+/// if it takes more than `limit` times the earlier.
 pub fn compare(
     all: &mut Figures,
     earlier: &Earlier,
