@@ -156,7 +156,7 @@ pub fn pass<B: Block>(block: &mut B, args: &SortArgs) {
     }
 }
 
-/// A phase over all bins, whatever the number of lanes.
+/// A phase over all bins, for any number of lanes.
 #[inline]
 pub fn each_bin<B: Block>(block: &mut B, mut body: impl FnMut(&B::Lane, u32)) {
     let lanes = block.lanes();

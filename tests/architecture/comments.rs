@@ -2,7 +2,7 @@
 //! word that the field has a better one for.
 
 use crate::sources::{NONE, Source, files, planted};
-use crate::words::{banned, opening, sentences};
+use crate::words::{badly_chosen, sentences};
 
 /// Folders whose comments hold the rules.
 const HELD: [&str; 9] = ["host", "io", "emulator", "lab", "cli", "python", "c", "examples", "fuzz"];
@@ -19,12 +19,7 @@ fn comments(text: &str) -> String {
 
 /// Sentences of comments that begin wrongly or have a word of the list.
 fn badly_worded((name, text): &Source) -> Vec<String> {
-    let mut found = Vec::new();
-    for (at, sentence) in sentences(&comments(text)) {
-        found.extend(opening(&sentence).map(|first| format!("{name}:{at}: begins with {first}")));
-        found.extend(banned(&sentence).map(|word| format!("{name}:{at}: {word}")));
-    }
-    found
+    badly_chosen(name, &comments(text))
 }
 
 #[test]

@@ -34,7 +34,7 @@ impl<T> Span<T> {
     ///
     /// # Safety
     /// `addr` is aligned for `T`. The `len` elements from there on are memory of one device, valid
-    /// as `T` whatever their bits. They live as long as launches are given the span.
+    /// as `T` for any bits. They live as long as launches are given the span.
     pub const unsafe fn new(addr: u64, len: u64) -> Self {
         Span { addr, len, element: PhantomData }
     }

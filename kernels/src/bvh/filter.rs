@@ -22,7 +22,7 @@ impl FilterArgs {
 
     /// Whether triangles below one node may meet triangles below the other. Two bodies must share
     /// an environment, or one is in every environment. Each must be in a group that the other
-    /// meets. A body meets itself by its own flag, whatever its groups. A refusal for two nodes
+    /// meets. A body meets itself by its own flag, for any groups. A refusal for two nodes
     /// holds for all below them: environments are ranges of leaves, and a hub of a node is one of
     /// all below it.
     #[inline(always)]
