@@ -1,4 +1,4 @@
-//! A process that was forked has none of the threads: it is told so, where it would wait for ever.
+//! A forked process has none of the threads: calls return an error instead of waiting for ever.
 #![cfg(target_os = "linux")]
 
 use nearmiss::device::Backend;
@@ -20,7 +20,8 @@ unsafe extern "C" {
 /// The signal of an alarm.
 const WAITED: i32 = 14;
 
-/// How a fork ends that asks this: 0 where it is so; [`WAITED`] where it has no answer after so many seconds.
+/// Exit of a fork that runs this: 0 if it is true; [`WAITED`] if there is no result after so many
+/// seconds.
 fn forked(seconds: u32, is_so: impl FnOnce() -> bool) -> i32 {
     // SAFETY: the fork has this thread alone, runs what needs no other or is ended by the alarm, and leaves without what others would do at
     // an exit; the status is there while it is waited for.
@@ -72,10 +73,10 @@ fn a_fork_is_told_that_it_has_no_threads() {
     assert_eq!(forked(60, || is_told(own.narrow_steps()) && is_told(own.plan())), 0);
     own.prepare(&[]).expect("prepared");
     assert_eq!(forked(60, || is_told(own.submit()) && is_told(own.collect())), 0);
-    // What was found is there, and the process itself goes on.
+    // The answer is there, and the process itself goes on.
     assert_eq!(forked(60, || found.len() == 15), 0);
     assert_eq!(own.detect().expect("an answer").rows, found.rows);
 
-    // What it would be without.
+    // The same without the check.
     assert_eq!(forked(1, || (0..1000).into_par_iter().map(|i| i % 2).sum::<i32>() == 500), WAITED);
 }

@@ -1,4 +1,5 @@
-//! Where contacts are takes memory, which is asked for before it is taken. The only test of its process, whose memory it limits.
+//! Geometry of contacts takes memory, which is checked before it is taken. The only test of its
+//! process, whose memory it limits.
 #![cfg(target_os = "linux")]
 
 use nearmiss::mesh::Positions;

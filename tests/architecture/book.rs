@@ -24,14 +24,14 @@ fn prose(text: &str) -> Vec<(usize, String)> {
         let fence = line.trim_start().starts_with("```");
         inside ^= fence;
         if !inside && !fence && !line.trim_start().starts_with("<!--") {
-            // What stands between backticks is code.
+            // Text between backticks is code.
             found.push((at + 1, line.split('`').step_by(2).collect::<Vec<_>>().join("code")));
         }
     }
     found
 }
 
-/// Where the links and images of a page lead, with their lines.
+/// Targets of the links and images of a page, with their lines.
 fn links(text: &str) -> Vec<(usize, String)> {
     let mut found = Vec::new();
     for (at, line) in prose(text) {

@@ -13,7 +13,7 @@ fn without_tests(mut sources: Vec<Source>) -> Vec<Source> {
     sources
 }
 
-/// What serves volumes, whatever they are: without their own files, and without tests.
+/// Sources that serve any volume: without the volumes' own files, and without tests.
 fn serves_volumes() -> Vec<Source> {
     let kernels = ["abi", "bv/mod.rs", "bvh", "entry", "entry.rs", "queue", "stage"];
     let rooms = kernels.map(|room| format!("kernels/src/{room}"));
@@ -71,7 +71,7 @@ fn a_second_place_that_knows_a_volume_is_noticed() {
     assert_eq!(knows_a_volume(VOLUMES[2], &harmless), NONE);
 }
 
-/// The lines of the pipeline that tell kinds of queries apart.
+/// Lines of the pipeline that distinguish kinds of queries.
 fn tells_kinds_apart(sources: &[Source]) -> Vec<String> {
     let kinds = ["Discrete", "Continuous", "Earliest", "Near"];
     let apart = |code: &str, kind: &str| {

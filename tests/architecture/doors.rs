@@ -18,7 +18,8 @@ const EXTENDED: [&str; 10] = [
     "Stats",
 ];
 
-/// What the laboratory has: its types and traits, the modules that they are defined in, and the methods of its traits.
+/// Names of the laboratory: types and traits, the modules that define them, and methods of its
+/// traits.
 struct Laboratory {
     names: Vec<String>,
     modules: Vec<String>,

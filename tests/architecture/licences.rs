@@ -1,11 +1,12 @@
-//! Licences of all that is built in: each must let a program under MIT or Apache-2.0 contain it. What only tests use may be of any.
+//! Licences of everything that is built in: each must let a program under MIT or Apache-2.0 contain
+//! it. Packages that only tests use may have any.
 
 use serde_json::Value;
 use spdx::{Expression, ParseMode};
 use std::collections::HashSet;
 use std::process::Command;
 
-/// Licences that may be, as cargo-deny is told them.
+/// Allowed licences, from cargo-deny's configuration.
 fn allowed() -> Vec<String> {
     let told: toml::Table = include_str!("../../deny.toml").parse().expect("deny.toml is TOML");
     told["licenses"]["allow"].clone().try_into().expect("a list of names")
@@ -33,7 +34,7 @@ fn built_in(metadata: &Value) -> HashSet<&str> {
     found
 }
 
-/// Packages and their licences that are not allowed, of what `cargo metadata` tells.
+/// Packages whose licences are not allowed, by the output of `cargo metadata`.
 fn not_allowed(metadata: &Value) -> Vec<String> {
     let built_in = built_in(metadata);
     assert!(built_in.len() > 1, "packages");
@@ -65,7 +66,8 @@ fn what_is_built_in_may_be() {
     assert_eq!(not_allowed(&metadata), Vec::<String>::new());
 }
 
-/// What cargo would tell of a package `ours` that uses so many others, of these licences, in that way; and one without a licence.
+/// Output of cargo for a package `ours` that uses so many others, of these licences, in that way;
+/// and one without a licence.
 fn told_of(licences: &[&str], kind: &Value) -> Value {
     let licences: Vec<Value> = licences.iter().map(|of| Value::from(*of)).chain([Value::Null]).collect();
     let others = licences.iter().enumerate();

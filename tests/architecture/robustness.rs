@@ -1,5 +1,6 @@
-//! The rule about the catalogue of extremes: every id has a row in `docs/internals/robustness.md`, every row its tests, and every test
-//! exists, is a test, and asks that id where it runs over the catalogue's data.
+//! The rule about the catalogue of extremes: every id has a row in `docs/internals/robustness.md`,
+//! and every row its tests. Every test exists, is a test, and runs that id if it runs over the
+//! catalogue's data.
 
 use crate::sources::{NONE, Source, files};
 use nearmiss_lab::robustness::{questions, refused, scenes};
@@ -39,7 +40,7 @@ const NAMED: [&str; 28] = [
 /// How many failures of others the catalogue lists besides.
 const REPORTS: usize = 29;
 
-/// The tests that run over data, by the ids that they ask.
+/// The tests that run over data, by their ids.
 fn asked_by(test: &str) -> Option<Vec<&'static str>> {
     let all: Vec<&'static str> = match test {
         "questions_are_answered" => questions().iter().map(|q| q.id).collect(),
@@ -117,7 +118,7 @@ fn table() -> String {
     files("docs/internals/robustness.md")[0].1.clone()
 }
 
-/// Where tests are.
+/// Sources that have tests.
 fn sources() -> Vec<Source> {
     [files("tests"), files("host"), files("lab"), files("cli")].concat()
 }

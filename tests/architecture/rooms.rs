@@ -1,4 +1,4 @@
-//! The ground floor of the host: what is given, asked and answered are values that know no device.
+//! The ground floor of the host: inputs, queries and answers are values that know no device.
 
 use super::sources::{NONE, Source, after, lines, planted, rust, says};
 
@@ -27,7 +27,7 @@ fn a_value_that_knows_the_device_is_noticed() {
 
 // The library opens no file: readers and writers are the package `nearmiss-io`.
 
-/// What reads the system's accounts of memory, and Linux has these as files.
+/// The file that reads the system's accounts of memory; Linux has these as files.
 const ACCOUNTS: &str = "host/memory.rs";
 
 fn opens_files(sources: &[Source]) -> Vec<String> {

@@ -71,7 +71,7 @@ pub fn lines(sources: &[Source], bad: impl Fn(&str, &str) -> bool) -> Vec<String
     found
 }
 
-/// What follows each whole-word occurrence of `word`: the next path segment.
+/// The path segments that follow whole-word occurrences of `word`.
 pub fn after<'a>(code: &'a str, word: &'a str) -> impl Iterator<Item = &'a str> {
     let ident = |c: char| c.is_alphanumeric() || c == '_';
     code.match_indices(word).filter_map(move |(at, _)| {

@@ -267,7 +267,7 @@ fn frames_that_do_not_belong_together_are_refused() {
 
 type Odd<'a> = (&'a str, Vec<u8>, &'a [[u32; 3]]);
 
-/// Every file here has the triangles that stand beside it.
+/// Every file here has the triangles that are listed with it.
 #[test]
 fn odd_but_legal_files_are_accepted() {
     let one = [[0, 1, 2]].as_slice();

@@ -18,7 +18,7 @@ thread_local! {
 struct Counting;
 
 fn add(bytes: isize) {
-    // During the end of a thread its counters may be gone, and nobody asks for them.
+    // During the end of a thread its counters may be gone, and are not needed.
     let _ = NOW.try_with(|now| {
         now.set(now.get() + bytes);
         let _ = PEAK.try_with(|peak| peak.set(peak.get().max(now.get())));
@@ -51,13 +51,13 @@ fn peak<T>(work: impl FnOnce() -> T) -> (T, usize) {
     (result, (PEAK.get() - before) as usize)
 }
 
-/// What a reader may hold for a file: the mesh, its growth, its messages. Most for a face of many one-byte corners:
-/// 12 bytes a byte, three times while a vector grows.
+/// Most memory of a reader for a file: the mesh, its growth, its messages. A face of many one-byte
+/// corners needs most: 12 bytes a byte, three times while a vector grows.
 fn bound(file: usize) -> usize {
     64 * 1024 + 64 * file
 }
 
-/// Reads; whatever comes out must be a mesh that the door would let in again, or a message.
+/// Reads a file. The result must be a mesh that validation accepts again, or a message.
 fn survive(format: Format, bytes: &[u8]) -> Result<(), TestCaseError> {
     let (read, held) = peak(|| MeshFile::parse("fuzz", format, bytes));
     prop_assert!(held <= bound(bytes.len()), "{held} bytes held for a file of {}", bytes.len());

@@ -1,6 +1,7 @@
 //! Files of meshes: read, cut, welded, or refused by their reason.
 //!
-//! The allocator of `fuzz_readers` counts for each thread, so that no test beside it moves its counts.
+//! The allocator of `fuzz_readers` counts for each thread, so that no other test changes its
+//! counts.
 
 mod bad_input;
 mod fuzz_readers;

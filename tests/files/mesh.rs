@@ -57,7 +57,8 @@ fn the_door_lets_odd_but_legal_meshes_in() {
     assert_eq!(kept.positions().get_f64(5), None);
 }
 
-/// What single precision cannot be computed with is kept in double precision, to the bit; what no face uses decides nothing.
+/// Vertices that single precision cannot compute with are kept in double precision, to the bit.
+/// Vertices that no face uses decide nothing.
 #[test]
 fn large_floats_are_kept_as_doubles() {
     for (x, wide) in [(2f32.powi(60), false), (2f32.powi(60).next_up(), true), (-f32::MAX, true)] {

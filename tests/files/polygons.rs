@@ -28,7 +28,7 @@ fn moving(t0: &MeshFile, t1: &MeshFile) -> Result<Body, Error> {
     Body::moving(t0.mesh().clone(), t1.clone().cut_as(t0)?.into_mesh())
 }
 
-/// In the plane on which one coordinate hangs on the others.
+/// Lifts into a plane on which one coordinate depends on the others.
 fn lift(flat: &[Flat], axis: usize, tilt: [i64; 2]) -> Vec<[f64; 3]> {
     let at = |&[u, v]: &Flat| {
         let mut p = [u, v, tilt[0] * u + tilt[1] * v + 3];
@@ -106,7 +106,8 @@ fn the_judge_notices_each_fault() {
     says(&with(0, [good[0][0], good[0][2], good[0][1]]), "turns");
 }
 
-/// What was a right fan is the same fan: convex polygons, flat corners and corners twice included, and what the first corner sees whole.
+/// A valid fan stays the same fan: convex polygons, also with flat or repeated corners, and
+/// polygons that are visible from the first corner.
 #[test]
 fn right_fans_stay() {
     let ring: Vec<Flat> = (0..40)
@@ -183,7 +184,7 @@ fn faces_that_cross_themselves_are_noted() {
         text.contains("face 2, with 4 corners, crosses itself: its edges between the vertices 0 and 1"),
         "{text}"
     );
-    // A corner that is not finite is told first.
+    // A corner that is not finite is reported first.
     assert!(parse("v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 nan 0\nf 1 2 3 4\n").unwrap_err().contains("finite"));
 }
 
@@ -267,7 +268,7 @@ fn triangles_know_their_face_of_the_file() {
     assert_eq!(of, [0, 0, 0, 1, 2, 2, 3]);
 }
 
-/// Two frames have the triangles of the first, whatever the second would be cut into.
+/// Two frames have the triangles of the first, however the second would be cut.
 #[test]
 fn frames_are_cut_as_the_first() {
     let t0 = parse(DART).unwrap();

@@ -1,4 +1,4 @@
-//! Scenes that go on: the same bits always, and free of intersections where that was asked.
+//! Scenes over many frames: always the same bits, and free of intersections if that is required.
 
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::Discrete;

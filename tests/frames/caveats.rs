@@ -1,4 +1,5 @@
-//! Every way in which an answer can be less than was asked is forced here, and must say so: by its reason, with a count. None of them may lose a contact.
+//! Every way in which an answer can be incomplete is forced here, and must be reported: by its
+//! reason, with a count. None of them may lose a contact.
 
 use nearmiss::contacts::{Caveat, Contact, Status};
 use nearmiss::mesh::{Body, Mesh};
@@ -124,7 +125,7 @@ fn a_tolerance_below_the_precision_is_told() {
         let (pairs, listed) = told(solver, QueryKind::Continuous, tolerance);
         assert_eq!(pairs, Some(Some(listed)), "{solver:?}: no pair here is small enough");
         assert_eq!(told(solver, QueryKind::Earliest, tolerance).0, Some(None), "{solver:?}");
-        // All that the precision gives is what was asked; or what it can tell.
+        // All that the precision gives is as required, or as fine as it can resolve.
         for enough in [0.0, 1e-4] {
             assert_eq!(told(solver, QueryKind::Continuous, enough).0, None, "{solver:?}");
             assert_eq!(told(solver, QueryKind::Earliest, enough).0, None, "{solver:?}");
@@ -176,7 +177,7 @@ fn a_front_that_is_dropped_is_told() {
     assert_eq!(told(false), [false; 4]);
 }
 
-/// What was counted for one frame is not told of the next, nor is what the bodies were before they moved.
+/// Counts of one frame do not carry over to the next, nor do shapes of bodies before they moved.
 #[test]
 fn each_frame_is_told_by_itself() {
     let query = with_tolerance(by(Solver::CertifiedF32), 1.3e-6);
@@ -195,8 +196,9 @@ fn each_frame_is_told_by_itself() {
     assert!(told[0] != told[1] && told[0] == told[2], "{told:?}");
 }
 
-/// As much memory as a frame needs, a little less, and so on down to none: the answer, in slices where the lists of all have no room, or
-/// an error that says how much was asked and given. Asked again, the same: no half-grown list answers.
+/// As much memory as a frame needs, a little less, and so on down to none. The result is the
+/// answer, in slices if the lists of all have no room, or an error with the bytes needed and
+/// available. A second query gives the same: no half-grown list answers.
 #[test]
 fn memory_that_ends_is_an_error() {
     let [equal, cloth] =

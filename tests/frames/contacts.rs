@@ -39,7 +39,7 @@ fn certified(scene: &Scene, body: &Body, truth: &[Row], solver: Solver, cubic: &
     assert_eq!(errors.missed, [], "{}", scene.name);
     assert_eq!(difference(&sure, truth).invented, [], "{}: what is certain is true", scene.name);
     assert_eq!((sure.len() + undecided, undecided as u64), (answer.len(), answer.undecided));
-    // Of the candidates that there are, whatever the volumes leave out of them.
+    // The share of the candidates, however many the volumes leave out.
     let candidates: u64 = scene.candidates.iter().sum();
     assert!(errors.invented.len() as u64 * 1_000_000 <= 4 * candidates, "{:?}", errors.invented);
     assert_eq!(later(&answer, cubic, ROUNDING).0, 0, "late");
@@ -101,7 +101,7 @@ fn double(scene: &Scene, body: &Body, truth: &[Row]) -> Contacts {
         vec![body.clone()],
         by(QueryKind::Continuous, Solver::CubicF64).with_volume(BoundingVolume::Aabb),
     );
-    // The same whatever volumes brought the triangles, and fewer than boxes swept over the whole step overlap in.
+    // The same by any volumes, and fewer than overlaps of boxes swept over the whole step.
     assert_eq!(boxes.stats.candidates_vf_ee, scene.near, "candidates of {}", scene.name);
     assert_eq!(answer.stats.candidates_vf_ee, scene.near, "candidates of {}", scene.name);
     assert!(

@@ -1,4 +1,5 @@
-//! The distance query: pairs of triangles beside exact fractions, whole scenes beside all pairs asked one by one.
+//! The distance query: pairs of triangles compared with exact fractions, whole scenes with all
+//! pairs tested one by one.
 
 mod frame;
 mod hunt;

@@ -117,7 +117,7 @@ fn fault(way: &str, wanted: First, said: First) -> Option<String> {
     (said != wanted).then(|| format!("{way}: {said:?} where the least of all is {wanted:?}"))
 }
 
-/// Ways of asking, each with its device.
+/// Ways of querying, each with its device.
 fn ways(query: Query, all: bool) -> Vec<(String, Device, Query)> {
     let threads = |n| Device::emulator(Emulator::new(Mode::Engine, Some(n)).expect("threads"));
     let mut ways = Vec::new();
@@ -145,7 +145,7 @@ fn ways(query: Query, all: bool) -> Vec<(String, Device, Query)> {
     ways
 }
 
-/// Asks the earliest time of a body in every `part`-th way; the answer that all gave.
+/// Queries the earliest time of a body in every `part`-th way; returns the answer that all gave.
 fn same(
     what: &str,
     body: &Body,

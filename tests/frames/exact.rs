@@ -39,7 +39,7 @@ const SETS: [(&[&str], &str, bool); 8] = [
     (&["exact/noisy.ply"], "exact/noisy.pairs.csv.gz", false),
 ];
 
-/// Where they are required, as in CI, tests without data are no success.
+/// If data are required, as in CI, tests without data fail.
 #[test]
 fn there_are_data_where_they_are_required() {
     let required = std::env::var_os("NEARMISS_REQUIRE_DATA").is_some();
@@ -60,13 +60,13 @@ fn every_pair_set_equals_the_exact_one() {
     }
 }
 
-/// Whatever the tree wears, however it is refitted and walked.
+/// For every volume, refit and walk.
 #[test]
 #[cfg_attr(not(public_data), ignore = "no public test data: set NEARMISS_DATA")]
 fn every_way_finds_the_exact_pairs() {
     for (meshes, pairs, small) in SETS {
         let (bodies, truth) = (bodies(meshes), listed(pairs));
-        // Every volume with every walk; the refits take turns. Of the large sets a few.
+        // Every volume with every walk; the refits take turns. The large sets have fewer.
         let turn = |i: usize| i % 3 == i / 3 % 3 && (small || i.is_multiple_of(5));
         for (i, way) in ways(Query::discrete()).enumerate().filter(|(i, _)| turn(*i)) {
             let found = ask(engine(), bodies.clone(), way);

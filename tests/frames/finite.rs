@@ -39,8 +39,8 @@ fn soup(moving: bool) -> Body {
     times(&body, -(most.log2().floor() as i32))
 }
 
-/// What is wrong with an answer beside that of ordinary size. Times may have other certificates, as f32 cannot be used at
-/// the ends of its range: but both hold the truth, so they overlap.
+/// The difference of an answer from that of ordinary size. Times may have other certificates, as
+/// f32 cannot be used at the ends of its range. But both hold the truth, so they overlap.
 fn fault(truth: &Contacts, found: &Contacts) -> Option<String> {
     if truth.triangles() != found.triangles() {
         return Some(format!("{} pairs, not {}", found.triangles().len(), truth.triangles().len()));

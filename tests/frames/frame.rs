@@ -1,5 +1,5 @@
-//! Whole frames against brute force and known answers: the pipeline loses nothing, invents nothing, and does no work
-//! that nobody asked for.
+//! Whole frames against brute force and known answers: the pipeline loses nothing, invents nothing,
+//! and does no unnecessary work.
 
 mod certified;
 mod continuous;

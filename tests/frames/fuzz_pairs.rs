@@ -1,7 +1,9 @@
-//! The questions of the fuzz targets, asked with random bytes on stable: two triangles, two moving features, whole small
-//! scenes, each judged by the oracle. What a fuzzer found is kept in tests/finds and asked again.
+//! The targets of the fuzzers, run with random bytes on stable: two triangles, two moving features,
+//! whole small scenes, each judged by the oracle. Finds of a fuzzer are kept in tests/finds and run
+//! again.
 //!
-//! The seed is printed; `NEARMISS_SEED` sets it, `NEARMISS_FUZZ_SECONDS` the time of each question [default: 5].
+//! The first random number is printed; `NEARMISS_SEED` sets it, `NEARMISS_FUZZ_SECONDS` the time of
+//! each target [default: 5].
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use nearmiss::contacts::Rows;
@@ -15,7 +17,7 @@ use support::fuzz::{bytes, continuous, discrete, distance, near, scene};
 /// One question: the name of its target, the most bytes that it reads, and the judged answer.
 type Question = (&'static str, usize, fn(&[u8]) -> Result<(), String>);
 
-/// Without another: `cargo test` asks the same every time, the fuzzers ask anew.
+/// The default: `cargo test` runs the same bytes every time, the fuzzers other ones.
 const SEED: u64 = 1;
 
 const QUESTIONS: [Question; 5] = [
@@ -38,7 +40,7 @@ fn random_bytes(r: &mut SmallRng, most: usize) -> Vec<u8> {
     (0..r.random_range(1..=most)).map(|_| r.random::<u8>() & mask).collect()
 }
 
-/// Asks for a while; how often, and the first fault with the bytes that show it.
+/// Runs for a while; returns the number of runs, and the first fault with the bytes that show it.
 fn search(question: Question, seed: u64, time: Duration) -> (u64, Option<String>) {
     let (_, length, ask) = question;
     let mut r = SmallRng::seed_from_u64(seed);

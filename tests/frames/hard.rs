@@ -12,16 +12,16 @@ use std::time::Instant;
 use support::asked::{by, of};
 use support::{ask, data, engine, hard};
 
-/// A test asks a fourth of the triangles.
+/// A test takes a fourth of the triangles.
 const PART: usize = 4;
-/// Of a hundred candidates, at most so many are cut into slices.
+/// At most so many in a hundred candidates are cut into slices.
 const SLICED: u64 = 5;
 
 fn total([vf, ee]: [u64; 2]) -> u64 {
     vf + ee
 }
 
-/// What the rungs had to do, and microseconds a candidate on one thread.
+/// Prints the work of the rungs, and microseconds a candidate on one thread.
 fn asked(name: &str, bodies: Vec<nearmiss::Body>, solver: Solver) -> Contacts {
     let device = Device::open(Backend::Cpu, Some(1)).expect("a CPU");
     let query = by(QueryKind::Continuous, solver);
@@ -95,7 +95,8 @@ fn a_fan_round_one_vertex_is_not_tested_pair_by_pair() {
     }
 }
 
-/// What touches from the start is certain of it, by the exact rung: no search could be.
+/// Features that touch from the start are certain contacts, by the exact rung: no search could
+/// certify them.
 #[test]
 fn what_rests_is_certain() {
     for (name, body) in hard::hard(PART).into_iter().filter(|(name, _)| name.contains("equal")) {

@@ -1,4 +1,5 @@
-//! What an answer must not depend on: numbering, order, names of the axes, units, the machine and its choices.
+//! Things on which an answer must not depend: numbering, order, names of the axes, units, the
+//! machine and its choices.
 
 mod choices;
 mod numbering;

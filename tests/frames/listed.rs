@@ -1,6 +1,6 @@
-//! What a certified solver lists is a function of the pair alone: of near misses, and of whatever a rung cannot tell, the
-//! same pairs with the same times by every volume, walk and refit, at every tolerance and budget; and they are the pairs
-//! that the solver names one by one.
+//! The rows of a certified solver depend on the pair alone, also for near misses and for pairs that
+//! a rung cannot decide: the same pairs with the same times by every volume, walk and refit, at
+//! every tolerance and limit of iterations. They are the pairs that the solver reports one by one.
 
 use nearmiss::contacts::{Kind, Status};
 use nearmiss::mesh::{Body, Mesh, Positions};
@@ -90,7 +90,8 @@ fn heap(seed: u64) -> Vec<Moved> {
     all.into_iter().map(scaled).collect()
 }
 
-/// A triangle and others that touch its plane and turn back, beside it and on it, by about a tolerance.
+/// A triangle and others that touch its plane and turn back, outside of it and on it, by about a
+/// tolerance.
 fn turning() -> Vec<Moved> {
     let mut all = vec![[0.0, 1.0].map(|t| [[0.0; 3], [4.0, 0.0, 4.0 * t], [0.0, 4.0, 0.0]])];
     for i in 0..24 {
@@ -184,7 +185,7 @@ fn near_misses(answer: &Contacts) -> usize {
     answer.contacts().iter().filter(|c| c.status == Status::Undecided).count()
 }
 
-/// Asks in every way; the first that differs.
+/// Queries in every way; returns the first that differs.
 fn differs(bodies: &[Body], query: Query) -> Result<Contacts, String> {
     let truth = ask(engine(), bodies.to_vec(), query);
     for way in ways(query) {

@@ -1,4 +1,5 @@
-//! The near query: pairs of features beside exact fractions, whole frames beside all pairs asked one by one.
+//! The near query: pairs of features compared with exact fractions, whole frames with all pairs
+//! tested one by one.
 
 mod frame;
 mod hunt;

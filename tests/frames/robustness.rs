@@ -1,5 +1,6 @@
-//! The catalogue of extremes on the CPU: the engine asks all of it, the sanitizer a share. `nearmiss selftest` asks the
-//! same on the machine that it is on. `docs/internals/robustness.md` says which test holds which id.
+//! The catalogue of extremes on the CPU: the engine runs all of it, the sanitizer a share.
+//! `nearmiss selftest` runs the same on its machine. `docs/internals/robustness.md` names the test
+//! of each id.
 
 mod planted;
 
@@ -26,7 +27,7 @@ fn questions_are_answered_alike_when_turned() {
     right(ask_turned_questions(&engine(), &questions()).expect("answers"));
 }
 
-/// What the catalogue expects is what exact arithmetic says.
+/// The catalogue expects the results of exact arithmetic.
 #[test]
 fn the_catalogue_agrees_with_the_oracle() {
     for q in questions().iter().filter(|q| q.separation == 0.0) {

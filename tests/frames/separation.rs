@@ -1,5 +1,5 @@
-//! Features that come within a separation: whole frames against all pairs asked one by one, and pairs whose distance is
-//! known exactly.
+//! Features that come within a separation: whole frames against all pairs tested one by one, and
+//! pairs whose distance is known exactly.
 
 mod exact;
 
@@ -16,7 +16,7 @@ use support::asked::{by, certified};
 use support::brute::{Row, SOLVERS, Seen, fault, verdict};
 use support::{ask, engine, machines, ways};
 
-/// Of every question here, a length.
+/// The tolerance of every query here, a length.
 const TOLERANCE: f64 = 1e-3;
 
 fn asking(motion: QueryKind, solver: Solver, separation: f64) -> Query {

@@ -146,7 +146,8 @@ fn drive(kind: QueryKind, triangles: usize, frames: usize) -> (usize, usize) {
         simulator.launch(graph.as_ref().expect("recorded"));
         let found = read(&simulator, &detector).unwrap_or_else(|| {
             short += 1;
-            // What was recorded has too little room: the detector answers this frame, and the next is recorded anew.
+            // The recording has too little room: the detector answers this frame, and the next is
+            // recorded again.
             graph = None;
             let contacts = detector.collect().expect("an answer");
             assert!(!detector.is_prepared());
@@ -175,12 +176,13 @@ fn a_thousand_replays_lose_nothing() {
         println!("{kind:?}: {frames} frames, outgrown {short} times, {compared} contacts compared");
         let lists = !matches!(kind, QueryKind::Earliest | QueryKind::Distance);
         assert!(short >= 2 || !lists, "{kind:?}: {short}");
-        // Of an earliest query one time a frame, once there is any, of a distance one pair.
+        // An earliest query has one time a frame, once there is any, and a distance query one pair.
         assert!(compared > frames / 4, "{kind:?}: {compared}");
     }
 }
 
-/// What a frame costs its caller: by way of the host, from the device's memory, submitted, and as a recorded graph.
+/// The cost of a frame for its caller: by way of the host, from the device's memory, submitted, and
+/// as a recorded graph.
 #[test]
 fn what_a_replay_costs() {
     const TIMES: u32 = 100;

@@ -1,4 +1,4 @@
-//! The GPU: the committed PTX as text, which needs none, and a simulator beside it, which does.
+//! The GPU: the committed PTX as text, which needs none, and a simulator, which does.
 
 mod foreign;
 mod ptx;

@@ -38,10 +38,10 @@ fn foreign_paths(ptx: &str) -> Vec<&str> {
 /// Types of floating-point numbers, as parts of an instruction's name.
 const FLOATS: [&str; 10] =
     ["f16", "f16x2", "bf16", "bf16x2", "tf32", "f32", "f32x2", "f64", "e4m3x2", "e5m2x2"];
-/// What the kernels may do with them that rounds: correctly rounded to nearest, and marked so. Without the mark the
-/// assembler may contract a product and a sum.
+/// Operations of the kernels on them that round: correctly rounded to nearest, and marked so.
+/// Without the mark the assembler may contract a product and a sum.
 const ROUNDED: [&str; 6] = ["add", "sub", "mul", "div", "sqrt", "rcp"];
-/// What they may do with them that does not round, and depends on no order.
+/// Operations on them that do not round, and depend on no order.
 const EXACT: [&str; 16] = [
     "abs", "neg", "copysign", "min", "max", "setp", "set", "selp", "slct", "testp", "mov", "ld", "st", "ldu",
     "shfl", "cvta",
@@ -67,7 +67,7 @@ fn fault(word: &str) -> bool {
             has("sat") || !(widens || if to_integer { has("rzi") } else { has("rn") })
         }
         _ if ROUNDED.contains(&op) => !has("rn") || has("sat"),
-        // Sums of floats by atomics hang on the order; so does whatever is not known here.
+        // Sums of floats by atomics depend on the order; unknown operations may, too.
         _ => !EXACT.contains(&op),
     }
 }
@@ -228,7 +228,7 @@ fn an_inexact_instruction_is_noticed() {
         "cvt.rz.f32.f64 %r1, %rd1;",
         "cvt.rni.s32.f32 %r1, %r2;",
         "cvt.rn.sat.f32.f64 %r1, %rd1;",
-        // In an order that nobody knows.
+        // In an unknown order.
         "atom.global.add.f32 %r1, [%rd1], %r2;",
         "red.global.add.f64 [%rd1], %rd2;",
         // Somebody else's.
@@ -292,8 +292,8 @@ fn copying(ptx: &str) -> Vec<&str> {
     found
 }
 
-/// But for slices, where it is 1 us: inlined, the assembler gathers their atomics by a collective of which the judge of machine code
-/// (.ci/lanes.py) cannot tell that lanes are together.
+/// Except for slices, where it is 1 us: inlined, the assembler gathers their atomics by a
+/// collective. The judge of machine code (.ci/lanes.py) cannot see that its lanes are together.
 #[test]
 fn kernels_do_not_copy_their_arguments() {
     // Too large to be inlined: 37 words a lane are stored once, before hundreds of steps.

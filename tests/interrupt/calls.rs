@@ -93,7 +93,7 @@ fn every_call_can_be_ended() {
         ("prepare", |own| own.prepare(&[]).map(drop)),
     ];
     let fresh = detector(Query::continuous()).detect().expect("an answer");
-    // To prepare is a frame that names nobody.
+    // To prepare is a frame that names no body.
     let at_rest = detector(Query::continuous()).frame(&[]).expect("an answer");
     for (name, call) in calls {
         let want = if name == "prepare" { &at_rest } else { &fresh };

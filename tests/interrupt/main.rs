@@ -51,7 +51,7 @@ fn interrupted<T>(interrupt: &Interrupt, call: Result<T, Error>) {
     }
 }
 
-/// What two answers must have in common.
+/// Common parts of two answers.
 fn same(one: &Contacts, other: &Contacts, what: &str) {
     assert_eq!((one.hash(), &one.rows), (other.hash(), &other.rows), "{what}");
 }
@@ -131,13 +131,12 @@ fn the_sanitizer_sees_no_fault_behind_an_interrupt() {
 
 #[test]
 fn a_sample_answers_after_an_interrupt() {
-    // Of 2,048 tiles and more an earliest query takes one.
+    // An earliest query takes one of 2,048 tiles and more.
     let scene = Scene::from(scene::draped(70_000).expect("a cloth"));
     interrupts(|| threads(2), &scene, asked::of(QueryKind::Earliest), 6);
 }
 
-/// What an interrupt ends is a part of a frame: without one the frame has many more looks than a
-/// launch.
+/// An interrupt ends a part of a frame: without one the frame has many more looks than a launch.
 #[test]
 fn a_launch_is_looked_at_within_itself() {
     let mut detector =

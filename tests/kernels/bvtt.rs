@@ -1,4 +1,4 @@
-//! The tree of node pairs: whoever descends from a pair knows it as its parent.
+//! The tree of node pairs: a descent from a pair knows it as its parent.
 
 use nearmiss_kernels::abi::{NONE, Pair};
 use nearmiss_kernels::queue::bvtt::{descends_in_a, parent};

@@ -1,4 +1,4 @@
-//! What a block is, as the emulator gives it: collectives equal their definitions, in every order, for every number
+//! A block in the emulator: collectives equal their definitions, in every order, for every number
 //! of lanes and blocks.
 
 use nearmiss::device::Backend;
@@ -125,7 +125,7 @@ kernels! { [Args], 64, 4096;
 mod outputs;
 mod together;
 
-/// What a launch left behind.
+/// The state after a launch.
 struct Left {
     lanes: usize,
     given: Vec<u32>,
@@ -359,7 +359,8 @@ fn a_debug_engine_stops_at_a_stray_shared_access() {
     on_the_engine::<stray_in_shared_memory>();
 }
 
-/// What [`striped`] promises: each place once, and warps one after the other, items of a warp side by side.
+/// The promise of [`striped`]: each place once, and warps one after the other, items of a warp side
+/// by side.
 #[test]
 fn striped_items_are_all_items_in_the_order_of_ranks() {
     for lanes in LANES {

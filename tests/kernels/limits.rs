@@ -1,6 +1,8 @@
-//! What the cubic gets wrong: one small input for each class of `docs/internals/accuracy.md`, with its exact answer.
+//! Faults of the cubic: one small input for each class of `docs/internals/accuracy.md`, with its
+//! exact answer.
 //!
-//! These tests hold the text to the program. If one fails because the cubic answers right, mend the text.
+//! These tests hold the text to the program. If one fails because the cubic answers right, correct
+//! the text.
 
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::{Moving, vf_toi};
@@ -8,7 +10,7 @@ use nearmiss_lab::oracle::{Triangle, triangles_meet};
 use nearmiss_lab::pairs::built::Motion;
 use support::truth::built::toi;
 
-/// What it answers instead of the truth.
+/// Its wrong answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Says {
     Nothing,

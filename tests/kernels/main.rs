@@ -1,4 +1,5 @@
-//! What a kernel computes, without a detector: the narrow tests, their bounds, bounding volumes, a block of the emulator.
+//! Computations of kernels, without a detector: the narrow tests, their bounds, bounding volumes, a
+//! block of the emulator.
 
 mod bounds;
 mod bvtt;

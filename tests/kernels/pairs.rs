@@ -100,7 +100,7 @@ fn machines_and_storage_agree() {
     }
 }
 
-/// More than are asked at once, of which each has the answer that it has among few.
+/// More pairs than fit at once; each has the answer that it has among few.
 #[test]
 #[ignore = "takes a gigabyte"]
 fn a_million_cases() {
@@ -173,8 +173,9 @@ fn triangles_meet_as_the_oracle_says() {
     assert!(ask_triangles(&device, &pairs, &continuous(), Stored::F64).is_err());
 }
 
-/// On a grid of three points a side most triangles touch or lie in one plane: more are left to exact signs than there is room
-/// for at first. Stored in f32, where f64 is asked between, or in f64, all are answered, each once.
+/// On a grid of three points a side most triangles touch or are in one plane: more are left to
+/// exact signs than there is room for at first. Stored in f32 with f64 pairs between, or in f64,
+/// all are answered, each once.
 #[test]
 fn more_undecided_pairs_than_room() {
     let mut r = SmallRng::seed_from_u64(7);

@@ -1,4 +1,5 @@
-//! Which of the fifteen tests of two triangles are worth asking: none of features that meet is left out, whatever is rounded.
+//! The sift of the fifteen tests of two triangles: it leaves out no features that meet, with any
+//! rounding.
 
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::Moving;

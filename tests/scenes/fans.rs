@@ -82,8 +82,8 @@ fn so_do_all_walks_of_trees_without_adjacent_pairs() {
     }
 }
 
-/// Faces round one hub of a bicone share no vertex with most of those round the other, and boxes of both overlap at the rim:
-/// these pairs are candidates, whatever finds them. No hub tells them apart.
+/// Faces round one hub of a bicone share no vertex with most of those round the other, and boxes of
+/// both overlap at the rim. These pairs are candidates by any search. No hub separates them.
 #[test]
 fn a_bicone_has_a_square_of_candidates() {
     for height in [1e-3, 1.0] {

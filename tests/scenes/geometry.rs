@@ -1,4 +1,5 @@
-//! Where contacts are: vertices, weights, points and normals of scenes of all kinds of bodies, each judged by its own vertices.
+//! Geometry of contacts: vertices, weights, points and normals of scenes of all kinds of bodies,
+//! each judged by its own vertices.
 
 use nearmiss::contacts::{ContactGeometry, Contacts, Kind, Rows};
 use nearmiss::mesh::Positions;
@@ -31,7 +32,7 @@ fn met(query: Query, seed: u64) -> (OneQuery, Contacts) {
     (detector, found)
 }
 
-/// Where a vertex is at a time.
+/// Position of a vertex at a time.
 fn at(detector: &OneQuery, body: BodyId, vertex: u32, t: f64) -> [f64; 3] {
     let body = &detector.scene().bodies()[body.index()];
     let ends = match body.kind() {
@@ -53,7 +54,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|k| a[k] * b[k]).sum()
 }
 
-/// What is wrong with the geometry of a contact at that time, if anything.
+/// The fault of a contact's geometry at that time, if any.
 fn fault(
     detector: &OneQuery,
     (kind, bodies, [a, b]): (Kind, [BodyId; 2], [u32; 2]),
@@ -179,7 +180,8 @@ fn a_wrong_geometry_is_noticed() {
     }
 }
 
-/// Of bodies that only the device knows, to the bit; of other questions there is none; of other bodies an error.
+/// Device-resident bodies have the same geometry, to the bit. Other queries have none; other bodies
+/// are an error.
 #[test]
 fn geometry_goes_by_what_was_placed() {
     let (mesh, ends) = soup(60, 3);
@@ -193,7 +195,7 @@ fn geometry_goes_by_what_was_placed() {
         Positions::F32(points) => device.upload(points).expect("memory"),
         Positions::F64(_) => panic!("in single precision"),
     });
-    // SAFETY: the buffers live to the end of the test, and nobody writes them.
+    // SAFETY: the buffers live to the end of the test, and no code writes them.
     let rows = held.each_ref().map(|buffer| unsafe {
         DeviceRows::new(buffer.span().addr(), buffer.len(), 12, Number::F32).expect("rows")
     });

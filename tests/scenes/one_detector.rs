@@ -46,7 +46,7 @@ impl Bodies {
     }
 }
 
-/// Where bodies are in a step.
+/// Positions of bodies in a step.
 struct Step {
     cloth: [Positions; 2],
     ball: [Pose; 2],
@@ -71,7 +71,7 @@ impl Step {
     }
 }
 
-/// The answer of a detector that is asked this alone.
+/// The answer of a detector with this query alone.
 fn alone(bodies: &Bodies, step: &Step, query: &Query) -> Contacts {
     let mut detector = Detector::new(engine(), bodies.scene.clone()).expect("a detector");
     detector.step(&step.motions(bodies), query).expect("an answer")
@@ -86,7 +86,8 @@ fn difference(found: &Contacts, wanted: &Contacts) -> Option<String> {
         .then(|| format!("{:?}: {} rows, alone {}", found.query, found.rows.len(), wanted.rows.len()))
 }
 
-/// The first query of a life whose answer is not that of a detector that is asked it alone. `spoil` plants a fault.
+/// The first query of a life whose answer differs from that of a detector with it alone. `spoil`
+/// plants a fault.
 fn life(seed: u64, spoil: impl Fn(&mut Contacts)) -> (usize, Option<String>) {
     let mut rng = SmallRng::seed_from_u64(seed);
     let bodies = Bodies::new(10 * seed);

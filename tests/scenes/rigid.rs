@@ -68,7 +68,7 @@ fn placed(positions: &Positions, pose: &Pose) -> Positions {
     Positions::F64(positions.to_f64().into_iter().map(|point| pose.apply(point)).collect())
 }
 
-/// An answer, and everything that is told beside it which is not about its making.
+/// An answer, with everything that is reported except how it was made.
 fn rows(found: &Contacts) -> String {
     format!("{:?} {:?}", found.rows, found.caveats())
 }

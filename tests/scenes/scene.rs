@@ -1,4 +1,5 @@
-//! Scenes of many bodies: every kind, every filter, frame after frame; against the same bodies asked two by two.
+//! Scenes of many bodies: every kind, every filter, frame after frame; against the same bodies
+//! tested two by two.
 
 mod cost;
 mod edits;
@@ -36,7 +37,7 @@ fn pose(rng: &mut SmallRng) -> Pose {
     Pose { rotation: [x, y, z, w], translation: [(); 3].map(|()| rng.random_range(-0.2..0.2)) }
 }
 
-/// Where a pose takes positions: worked out here once more, as the documentation says it.
+/// Positions under a pose, computed here once more by the documentation.
 fn posed(pose: &Pose, positions: &Positions) -> Positions {
     let length = pose.rotation.iter().map(|q| q * q).sum::<f64>().sqrt();
     let [x, y, z, w] = pose.rotation.map(|q| q / length);

@@ -18,7 +18,7 @@ fn queries() -> Vec<Query> {
     kinds.map(asked::of).into_iter().chain([Query::near(0.01)]).collect()
 }
 
-/// The same answer, of the same candidates; what is asked for the earliest time hangs on what was found before.
+/// The same answer, of the same candidates. The work of an earliest query depends on earlier finds.
 fn is_the_same(one: &Contacts, several: &Contacts, what: &str) {
     assert_eq!(one.rows, several.rows, "{what}");
     assert_eq!(one.hash(), several.hash(), "{what}");
@@ -37,7 +37,7 @@ fn a_mesh_has_the_same_answer_on_any_number_of_devices() {
         for query in queries() {
             for volume in BoundingVolume::ALL {
                 let query = query.with_volume(volume);
-                // Several devices take tiles, whatever the volume.
+                // Several devices take tiles, for any volume.
                 let tiles = query.with_broad_phase(BroadPhase::Tiles);
                 let mut one = OneQuery::new(engine(), body.clone(), tiles).expect("a detector");
                 let want = one.detect().expect("an answer");

@@ -1,5 +1,5 @@
-//! Frames whose lists outgrow the memory: asked slice by slice, with the answer of a whole one, while bodies move, come and go, and on
-//! several devices.
+//! Frames whose lists outgrow the memory: run slice by slice, with the answer of a whole one, while
+//! bodies move, come and go, and on several devices.
 
 use nearmiss::query::{Query, QueryKind};
 use nearmiss::research::{BroadPhase, QueryExt};
@@ -14,7 +14,8 @@ fn queries() -> Vec<Query> {
     kinds.map(asked::of).into_iter().chain([Query::near(0.01)]).collect()
 }
 
-/// The largest part of what a whole frame takes that is too little for one: what the first frame, asked so, comes to.
+/// The largest part of a whole frame's memory that is too little for one; returns the first such
+/// frame's answer.
 fn too_little<T>(peak: u64, mut of: impl FnMut(Device) -> Option<(T, Contacts)>) -> (T, Contacts) {
     let parts = (1..40).rev().map(|part| peak * part / 40);
     let mut asked = parts.filter_map(|bytes| of(engine().with_memory_limit(bytes)));

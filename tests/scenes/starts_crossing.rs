@@ -80,7 +80,7 @@ fn random_scene(seed: u64) -> Scene {
     scene
 }
 
-/// Every query in motion, with a tolerance that does not hang on the bodies; with and without a
+/// Every query in motion, with a tolerance that does not depend on the bodies; with and without a
 /// separation.
 fn queries() -> impl Iterator<Item = Query> {
     let apart = Certified { tolerance: Some(1e-4), min_separation: 0.02, ..Certified::default() };

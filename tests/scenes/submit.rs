@@ -53,7 +53,7 @@ fn padded(points: &[[f32; 3]]) -> Vec<[f32; 4]> {
     points.iter().map(|&[x, y, z]| [x, y, z, f32::NAN]).collect()
 }
 
-/// What a submitted frame came to, as a caller on the device sees it. On a CPU that is here.
+/// The status of a submitted frame, as a caller on the device sees it. A CPU has it in host memory.
 fn status(detector: &OneQuery) -> FrameStatus {
     let answer = detector.on_device().expect("prepared");
     // SAFETY: of a CPU the address is the host's; the detector holds the memory, and nothing runs.
@@ -181,7 +181,8 @@ fn what_outgrows_its_room_is_seen_and_answered() {
             };
             points.chunks(3).flat_map(of).collect()
         };
-        // Of a distance few pairs are listed, but for such that may share a point: around these they will.
+        // A distance query lists few pairs, except those that may share a point: around these it
+        // does.
         let (still, [there, _]) = soup(300, 3);
         let there = Positions::F32(spread(&there, 0.0));
         scene.add(Body::fixed(Mesh::new("around one point", there, still.faces().to_vec()).expect("a mesh")));
@@ -213,7 +214,7 @@ fn what_outgrows_its_room_is_seen_and_answered() {
     }
 }
 
-/// The judges of these tests tell an answer apart from another one.
+/// The judges of these tests distinguish an answer from another one.
 #[test]
 fn another_frame_is_noticed() {
     let (scene, id, [t0, t1]) = pair(120);

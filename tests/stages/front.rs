@@ -1,4 +1,4 @@
-//! A front kept from frame to frame: the same answer as without, whatever moves.
+//! A front kept from frame to frame: the same answer as without, for any motion.
 
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::{Body, Mesh, Positions};
@@ -97,7 +97,8 @@ fn under_the_microscope_in_every_order() {
     }
 }
 
-/// What a front is for: where nothing moves, the tests of the descent are not made again; at best half of all.
+/// The use of a front: if nothing moves, the tests of the descent are not made again; at best half
+/// of all.
 #[test]
 fn where_nothing_moves_about_half_of_the_tests_are_saved() {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("an engine"));

@@ -138,7 +138,7 @@ fn what_is_worn_is_made_anew_by_itself() {
     }
 }
 
-/// Tiles are made anew on all devices or on none: one alone would divide other tiles than the others.
+/// Tiles are rebuilt on all devices or on none: one alone would divide other tiles than the others.
 #[test]
 fn devices_make_their_tiles_together() {
     let start = scene::soup(3_000, 10, false).expect("a soup");
@@ -152,7 +152,7 @@ fn devices_make_their_tiles_together() {
         .collect();
     let peak = whole.bytes().1;
     let mut alone = 0;
-    // Memory that ends on one device at one frame or another, and there it makes its tiles anew.
+    // Memory that ends on one device at one frame or another; there it rebuilds its tiles.
     for part in 1..40 {
         let device = engine().with_memory_limit(first + (peak - first) * part / 40);
         let devices = vec![device, engine()];

@@ -1,4 +1,4 @@
-//! Traversal by work queues: whatever their number, their sizes and the order of blocks, the candidates of a walk a
+//! Traversal by work queues: for any number, sizes and order of blocks, the candidates of a walk a
 //! leaf, no more and no less.
 
 mod ends;
@@ -16,7 +16,7 @@ use support::{ORDERS, engine, loose, sanitizer};
 /// The candidates as a set, and the answer.
 type Print = (u64, u64, u64);
 
-/// What a detector finds, in two frames: lists settle in the first.
+/// Findings of a detector in two frames: lists settle in the first.
 fn found(device: Device, bodies: &[Body], query: Query) -> (Print, Contacts) {
     let mut detector = OneQuery::new(device, bodies.to_vec(), query).expect("a detector");
     let mut ask = || {
@@ -35,7 +35,7 @@ fn by(traversal: Traversal, motion: QueryKind) -> Query {
     support::asked::of(motion).with_traversal(traversal)
 }
 
-/// What a walk a leaf finds.
+/// Findings of a walk a leaf.
 fn truth(bodies: &[Body], motion: QueryKind) -> Print {
     found(engine(), bodies, by(Traversal::PerLeaf { budget: None }, motion)).0
 }

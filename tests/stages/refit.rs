@@ -11,7 +11,8 @@ use support::{ORDERS, engine, machines};
 
 const WAYS: [Refit; 2] = [Refit::Levels, Refit::Treelets];
 
-/// A triangle far from everything: asked against it, a body of equal triangles has no contacts to count.
+/// A triangle far from everything: tested against it, a body of equal triangles has no contacts to
+/// count.
 fn far() -> Body {
     support::loose(&[[[1e6, 1e6, 1e6], [1e6 + 1.0, 1e6, 1e6], [1e6, 1e6 + 1.0, 1e6]]])
 }
@@ -48,7 +49,8 @@ fn frame(body: &Body, turn: u32) -> Body {
 
 type Prints = Vec<(&'static str, u64)>;
 
-/// What construction, fit and refit left after each frame: as built, moved three times, built anew, and moved again.
+/// The state after construction, fit and refit of each frame: as built, moved three times, rebuilt,
+/// and moved again.
 fn prints(device: Device, body: &Body, refit: Refit, volume: BoundingVolume) -> Vec<Prints> {
     let query = Query::discrete().with_refit(refit).with_volume(volume).with_rebuild(Rebuild::Manual);
     let mut detector = OneQuery::new(device, from_afar(body), query).expect("a detector");

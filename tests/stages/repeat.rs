@@ -117,8 +117,9 @@ fn nothing_has_no_stages() {
     }
 }
 
-/// Frames that launch what the last one did are launched at once, wherever the body moved meanwhile; a list that grows is another
-/// frame, and so is the one behind it. All answers are those of a detector that was never asked before.
+/// A frame with the launches of the last one is launched at once, for any motion meanwhile. A list
+/// that grows is another frame, and so is the one after it. All answers are those of a fresh
+/// detector.
 #[test]
 fn what_a_frame_launches_again_is_launched_at_once() {
     let body = scene::scene("cloth-ball", 500, 3).expect("a scene");

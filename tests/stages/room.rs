@@ -129,8 +129,9 @@ fn many_more_elementary_pairs_than_room() {
 /// The lists of a rung begin with room for so many.
 const RUNG: u64 = 1_024;
 
-/// In one plane, moving as one by a little: `n` small triangles that lie in a large one, each by itself; and beside it `m` long ones across `m`
-/// others. So 3 n vertices touch a face, and 4 m^2 edges an edge; no corner is where another is.
+/// In one plane, moving as one by a little: `n` small triangles inside a large one, each by itself,
+/// and `m` long ones across `m` others. So 3 n vertices touch a face, and 4 m^2 edges an edge; no
+/// corner is at another.
 fn lying(n: usize, m: usize) -> Body {
     let small = |i: usize| {
         let [x, y] = [i % 32, i / 32].map(|k| (k + 1) as f32 / 128.0);
@@ -186,7 +187,7 @@ fn shrinking(n: usize) -> Body {
 
 #[test]
 fn a_short_list_of_what_is_cut_into_slices() {
-    // 36 edges that shrink to a point on 36 others: 1,296 pairs that no sign tells apart.
+    // 36 edges that shrink to a point on 36 others: 1,296 pairs that no sign separates.
     let body = shrinking(36);
     let query = with_tolerance(Query::continuous(), 4e-3);
     for device in [engine(), sanitizer(Order::Shuffled(6))] {
@@ -216,8 +217,8 @@ fn the_microscope_sees_no_fault_in_a_frame_that_runs_again() {
 
 #[test]
 fn units_that_find_no_room_are_walked_anyway() {
-    // A walk of equal triangles crosses the whole tree: spilling after one step asks for far more than four units a
-    // triangle.
+    // A walk of equal triangles crosses the whole tree: spilling after one step needs far more than
+    // four units a triangle.
     let bodies = || vec![scene::identical(150).expect("a scene")];
     for budget in [1, 2, 7] {
         let spilling = Query::discrete().with_traversal(Traversal::PerLeaf { budget: Some(budget) });

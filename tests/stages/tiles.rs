@@ -186,8 +186,9 @@ fn sheets(down: f32, tilt: f32) -> Body {
     Body::moving(t0, t1).expect("a step")
 }
 
-/// Where there are many tiles some are asked first, and what they find leaves out what meets later: the answer is the first of all
-/// contacts, to the bit, and that of trees, which have no sample.
+/// If there are many tiles, some are tested first, and their contacts leave out all that meets
+/// later. The answer is the first of all contacts, to the bit, and that of trees, which have no
+/// sample.
 #[test]
 fn a_sample_leaves_out_what_is_later_and_nothing_else() {
     let soup = scene::soup(66_000, 5, true).expect("a soup");
@@ -216,7 +217,7 @@ fn a_sample_leaves_out_what_is_later_and_nothing_else() {
     }
 }
 
-/// What never meets has no first time, and nothing is left out.
+/// Bodies that never meet have no first time, and nothing is left out.
 #[test]
 fn a_sample_without_contacts_bounds_nothing() {
     let scene = Scene::from(sheets(0.3, 0.2));

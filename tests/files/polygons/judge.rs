@@ -20,7 +20,7 @@ pub fn fan(corners: usize) -> Vec<[u32; 3]> {
     (1..corners as u32 - 1).map(|k| [0, k, k + 1]).collect()
 }
 
-/// What is wrong with the triangles of a polygon that does not cross or touch itself.
+/// Faults of the triangles of a polygon that does not cross or touch itself.
 pub fn judge(flat: &[Flat], triangles: &[[u32; 3]]) -> Result<(), String> {
     let all = area(flat);
     if triangles.len() + 2 != flat.len() {

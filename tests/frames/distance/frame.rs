@@ -1,4 +1,5 @@
-//! Whole scenes: beside all pairs asked one by one, in every way, on every machine, moved about.
+//! Whole scenes: compared with all pairs tested one by one, in every way, on every machine, moved
+//! about.
 
 use nearmiss::contacts::NearestTriangles;
 use nearmiss::mesh::{Body, Mesh, Positions};
@@ -52,7 +53,8 @@ fn scenes() -> Vec<Vec<Body>> {
     ]
 }
 
-/// The first of the nearest, as the kernels' own function of two triangles tells it of all pairs that share no point.
+/// The first of the nearest pairs, by the kernels' own function of two triangles, over all pairs
+/// that share no point.
 fn by_brute_force(bodies: &[Body]) -> Option<(f64, [usize; 2], [u32; 2])> {
     let all: Vec<_> = bodies.iter().map(triangles).collect();
     let mut least: Option<(f64, [usize; 2], [u32; 2])> = None;
@@ -123,7 +125,8 @@ fn every_way_and_every_machine_finds_the_same() {
     }
 }
 
-/// Bodies of every kind, of environments and groups; and what is asked of which is what a scene's other queries ask.
+/// Bodies of every kind, of environments and groups. A distance query tests the pairs that a
+/// scene's other queries test.
 #[test]
 fn bodies_that_may_not_meet_are_not_asked_about() {
     let mut asked = 0;

@@ -1,4 +1,5 @@
-//! Pairs of hostile families, asked of the kernels' functions and of exact fractions: what is told is within its bound.
+//! Pairs of hostile families, by the kernels' functions and by exact fractions: the result is
+//! within its bound.
 
 use nearmiss_kernels::math::tolerance::{DISTANCE_CERTAIN, DISTANCE_ERROR, U64};
 use nearmiss_kernels::math::{Real, Vec3};
@@ -125,7 +126,8 @@ fn distances_of_triangles_are_within_their_bounds() {
     }
 }
 
-/// What boxes tell: with one axis the distance itself, else most of what is a little nearer than asked for.
+/// Verdicts of boxes: with one axis the distance itself, else most of the pairs that are a little
+/// nearer than the limit.
 #[test]
 fn boxes_tell_how_far_apart_triangles_are() {
     let mut r = SmallRng::seed_from_u64(3);

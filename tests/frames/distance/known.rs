@@ -39,7 +39,7 @@ fn a_triangle_through_another() {
     assert_eq!(nearest.points[0][2], 0.0);
 }
 
-/// They share a point, in one digit or none: exact signs tell.
+/// They share a point, in one digit or none: exact signs find it.
 #[test]
 fn what_touches_is_at_zero_and_what_nearly_does_is_not() {
     for (z, touches) in [(0.0, true), (f32::from_bits(1), false), (f32::MIN_POSITIVE, false), (1e-30, false)]

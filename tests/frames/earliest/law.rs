@@ -87,8 +87,7 @@ fn verdicts_keep_the_law_and_rules_that_skip_more_are_named() {
                 asked.reverse();
             }
             kept += asked.iter().filter(|pair| !pair.verdict.is_separated()).count();
-            // What was so before: a look around a time near the begin is not kept within the
-            // window.
+            // A former fault: a look around a time near the begin is not kept within the window.
             for pair in asked.iter_mut().filter(|pair| !pair.verdict.is_separated() && pair.not_before > 0.0)
             {
                 pair.verdict.toi = pair.not_before - 1.0 / 2048.0;

@@ -1,5 +1,5 @@
-//! Certified contacts in whole frames, against all pairs asked one by one: nothing that meets is left out, whatever the
-//! tolerance and the budget, and no bit is other.
+//! Certified contacts in whole frames, against all pairs tested one by one: no contact is left out,
+//! at any tolerance and limit of iterations, and no bit differs.
 
 use super::continuous::{boxes_meet, crowded, crumpled, promoted};
 use nearmiss::contacts::{Contact, Kind, Status};
@@ -85,7 +85,8 @@ fn nothing_is_lost_at_any_tolerance_and_budget() {
                 }
                 assert!(budget > 1 || all.undecided >= ample, "{what}: a budget of one box is not more");
                 let first = ask(engine(), vec![body.clone()], asking(QueryKind::Earliest, solver, &p));
-                // Pairs that could not be earlier than one that is known are not asked, so not counted either.
+                // Pairs that cannot be earlier than a known contact are not tested, so not counted
+                // either.
                 let least = [&first, &all].map(|a| a.earliest_toi().map(f64::to_bits));
                 assert_eq!(least[0], least[1], "{what}");
             }
@@ -102,7 +103,7 @@ fn every_machine_escalates_the_same() {
             .expect("a detector");
         let all = detector.detect().expect("an answer");
         let prints = detector.fingerprints().expect("prints");
-        // Of the earliest, which pairs are asked hangs on what was found before them.
+        // Which pairs an earliest query tests depends on the contacts found before them.
         let counts = (motion == QueryKind::Continuous).then_some((all.undecided, all.stats.escalated_vf_ee));
         (all.hash(), counts, prints)
     };

@@ -1,5 +1,5 @@
-//! Elementary pairs in motion, against all of them asked one by one with the same cubic: what the volumes, the walk
-//! and the sift leave out must be what the solver would not have found.
+//! Elementary pairs in motion, against all of them tested one by one with the same cubic: a pair
+//! that the volumes, the walk or the sift leave out must be one without a contact by the solver.
 
 use nearmiss::Contacts;
 use nearmiss::contacts::{Contact, Kind, Status};
@@ -13,8 +13,8 @@ use support::asked::by;
 use support::brute::{Seen, row};
 use support::{ask, engine, machines, moving, still};
 
-/// Whether the closed boxes of two sets of moving vertices overlap: two features whose boxes are apart never meet,
-/// whatever a tolerance of the solver says.
+/// Whether the closed boxes of two sets of moving vertices overlap: two features whose boxes are
+/// apart never meet, for any tolerance of the solver.
 pub fn boxes_meet(p: &[Moving<f64>], q: &[Moving<f64>]) -> bool {
     let reach = |of: &[Moving<f64>], axis: usize| {
         let all = || of.iter().flat_map(|m| [m.t0[axis], m.t1[axis]]);
@@ -90,7 +90,7 @@ fn difference(found: &[Contact], truth: &[Contact]) -> Option<String> {
     }
 }
 
-/// Asks every machine; the truth in f64.
+/// Queries every machine; returns the truth in f64.
 fn everywhere(what: &str, bodies: &[Body]) -> Contacts {
     let truth = brute::<f64>(bodies);
     let mut first = None;
@@ -202,7 +202,7 @@ fn a_body_that_stands_still_is_met() {
         kinds(&one),
         kinds(&other)
     );
-    // Where all stands still, what meets does so at once: on whole coordinates some do.
+    // If all bodies stand still, contacts are at t = 0; on whole coordinates there are some.
     let frozen = |seed| Body::deformable(crowded(seed, 30, 20).frames().remove(0));
     for bodies in [vec![frozen(1)], vec![frozen(1), frozen(2)]] {
         let found = everywhere("still", &bodies);

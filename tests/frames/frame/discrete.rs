@@ -1,4 +1,4 @@
-//! Triangle pairs: known counts, and all pairs asked one by one of the rational oracle.
+//! Triangle pairs: known counts, and all pairs tested one by one by the rational oracle.
 
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::Discrete;
@@ -286,7 +286,7 @@ fn doubles_are_not_rounded() {
     }
 }
 
-/// The float test is asked for scenes where it cannot err: the pipeline is the same for both.
+/// The float test is used on scenes without its errors: the pipeline is the same for both.
 #[test]
 fn the_float_test_finds_the_known_pairs_too() {
     let query = Query::from(Discrete::by(TriangleTest::Moller));

@@ -1,4 +1,4 @@
-//! What is not asked for is not done: launches and bytes are counted.
+//! Unneeded work is not done: launches and bytes are counted.
 
 use nearmiss::mesh::Body;
 use nearmiss::query::{Discrete, Near, QueryKind};

@@ -57,8 +57,8 @@ fn every_walk_finds_the_same() {
     }
 }
 
-/// Contacts do not depend on what the tree wears, how it is refitted and how it is walked; on any machine. Of the float
-/// solvers these scenes ask nothing that they cannot tell.
+/// Contacts do not depend on the volume, the refit and the walk, on any machine. These scenes have
+/// no pair that the float solvers cannot decide.
 #[test]
 fn every_way_finds_the_same_contacts() {
     let scenes = [
@@ -104,7 +104,8 @@ fn later(body: &Body, by: f64) -> Body {
 fn a_refitted_tree_finds_what_a_new_one_does() {
     for motion in [QueryKind::Discrete, QueryKind::Continuous, QueryKind::Earliest] {
         for bodies in [moving_scenes()[..1].to_vec(), moving_scenes()[1..].to_vec()] {
-            // The default tolerance hangs on where a detector begins: named, the bits are the same.
+            // The default tolerance depends on a detector's first positions; with a given tolerance
+            // the bits are the same.
             let named = with_tolerance(of(motion), 1e-5);
             let query = named.with_volume(BoundingVolume::Aabb);
             let mut detector = OneQuery::new(engine(), judged(bodies.clone()), query).expect("a detector");

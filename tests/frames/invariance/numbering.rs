@@ -119,7 +119,8 @@ fn bodies_exchanged() {
     for (one, two) in [(&scenes[0], &scenes[3]), (&scenes[1], &scenes[2])] {
         let there = found(&[one.clone(), two.clone()], QueryKind::Continuous);
         let back = found(&[two.clone(), one.clone()], QueryKind::Continuous);
-        // A vertex/face pair is the same query to the solver: same bits. Of two edges the first one changes.
+        // A vertex/face pair is the same query to the solver: same bits. For two edges the first
+        // one changes.
         let of = |contacts: &Contacts, kind, turned| -> BTreeMap<[u32; 2], Times> {
             let is = |c: &&Contact| c.kind == kind && (c.bodies[0] > c.bodies[1]) == turned;
             let all = contacts.contacts().iter().filter(is);

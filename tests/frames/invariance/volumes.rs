@@ -43,7 +43,7 @@ fn every_volume_leaves_the_contacts_as_they_are() {
     }
 }
 
-/// Who is certain to meet does so too when the step is run backwards, in every volume.
+/// Features that are certain to meet do so too when the step is run backwards, in every volume.
 #[test]
 fn backwards_in_time_the_same_features_meet() {
     for body in moving_scenes() {

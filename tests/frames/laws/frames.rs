@@ -1,12 +1,12 @@
 //! An answer about a frame depends on that frame's positions and the query alone: not on earlier
-//! frames, on what was asked before, on who was named when, on refused frames in between.
+//! frames, earlier queries, the bodies that were named, or refused frames in between.
 
 use super::*;
 use nearmiss::Rows;
 use nearmiss::device::Buffer;
 use nearmiss::scene::{DeviceMotion, DevicePose, DeviceRows, Number};
 
-/// Where a body is at both ends of the last step.
+/// Positions of a body at both ends of the last step.
 #[derive(Clone, Debug, PartialEq)]
 enum Place {
     Vertices([Positions; 2]),
@@ -15,7 +15,7 @@ enum Place {
 }
 
 impl Place {
-    /// Where a body that is not named is afterwards: where its step ended.
+    /// Positions of a body after a frame that does not name it: the end of its step.
     fn rests(&mut self) {
         match self {
             Place::Vertices([t0, t1]) => *t0 = t1.clone(),
@@ -60,7 +60,7 @@ fn body(rng: &mut SmallRng) -> (Body, Place) {
     }
 }
 
-/// Where a body goes next: on from where it was, or anywhere; a step, or no motion.
+/// The next place of a body: on from the last one, or anywhere; a step, or no motion.
 fn next(rng: &mut SmallRng, place: &Place) -> Place {
     let moves = rng.random_bool(0.7);
     match place {
@@ -275,9 +275,9 @@ fn a_forgotten_contact_is_named() {
     assert!(named.expect("a difference").contains("made for it"));
 }
 
-/// A query at rest, of a body at both ends of a step: first where the step begins, then, not named,
-/// where it ends. `end` is the end of which the first answer is expected; whether there was
-/// anything to tell the ends apart by.
+/// A query at rest, of a body at both ends of a step: first at the start of the step, then, not
+/// named, at its end. `end` is the expected end of the first answer. Returns whether the ends could
+/// be distinguished.
 fn at_rest(seed: u64, query: Query, end: usize) -> Result<bool, String> {
     let mut rng = SmallRng::seed_from_u64(seed);
     let mut bodies: Vec<Placed> = Vec::new();

@@ -4,7 +4,7 @@
 use super::*;
 use nearmiss::Rows;
 
-/// What an answer says about the bodies that were asked about.
+/// The part of an answer that concerns the queried bodies.
 #[derive(Clone, Debug, PartialEq)]
 enum OwnRows {
     Pairs(Vec<TrianglePair>),
@@ -50,7 +50,7 @@ fn body(rng: &mut SmallRng, (size, at, is_f64): (f64, f64, bool)) -> Body {
     }
 }
 
-/// Who may meet whom, at random; a fixed body has no contact with itself.
+/// A random filter; a fixed body has no contact with itself.
 fn meets(rng: &mut SmallRng, body: Body) -> Body {
     let self_collision = (body.kind() != BodyKind::Fixed).then(|| rng.random_bool(0.5));
     let environment = [Some(0), Some(0), Some(1), None][rng.random_range(0..4)];
@@ -59,7 +59,7 @@ fn meets(rng: &mut SmallRng, body: Body) -> Body {
     body.with_filter(CollisionFilter { environment, group, mask, self_collision })
 }
 
-/// Two or three bodies that are asked about.
+/// Two or three queried bodies.
 fn own(rng: &mut SmallRng) -> Vec<Body> {
     (0..rng.random_range(2..4))
         .map(|_| {
@@ -84,7 +84,7 @@ fn others(rng: &mut SmallRng) -> Vec<Body> {
         .collect()
 }
 
-/// A scene of bodies that are asked as they are.
+/// A scene of bodies with their filters.
 fn scene(bodies: &[Body]) -> Scene {
     let mut scene = Scene::new();
     bodies.iter().for_each(|body| _ = scene.add(body.clone()));
@@ -116,7 +116,7 @@ fn least_two_by_two(bodies: &[Body], query: Query) -> Least {
         // A body with itself alone.
         all.push(Least::of(&ask(&bodies[i..i + 1], query)));
         for j in i + 1..bodies.len() {
-            // Who meets itself was asked above.
+            // Contacts of a body with itself were tested above.
             let alone = [i, j].map(|k| {
                 let is_fixed = bodies[k].kind() == BodyKind::Fixed;
                 let self_collision = (!is_fixed).then_some(false);
@@ -131,8 +131,7 @@ fn least_two_by_two(bodies: &[Body], query: Query) -> Least {
     }
 }
 
-/// What differs where other bodies are, where they were added to a detector, and where they were
-/// and are gone.
+/// The difference if other bodies are there, were added to a detector, or were there and are gone.
 fn differs(own: &[Body], others: &[Body], query: Query) -> Option<String> {
     let all: Vec<Body> = own.iter().chain(others).cloned().collect();
     let alone = ask(own, query);
@@ -154,7 +153,7 @@ fn differs(own: &[Body], others: &[Body], query: Query) -> Option<String> {
     found.into_iter().find_map(|(when, contacts)| difference(when, &rows(&contacts, own.len())?, &wanted))
 }
 
-/// What differs from the least of bodies two by two.
+/// The difference from the least of bodies two by two.
 fn other_least(found: &Least, wanted: &Least) -> Option<String> {
     (found != wanted).then(|| format!("{found:?}, two by two {wanted:?}"))
 }

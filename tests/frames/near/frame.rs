@@ -1,4 +1,5 @@
-//! Whole frames: beside all pairs asked one by one, in every way, on every machine, moved and turned about.
+//! Whole frames: compared with all pairs tested one by one, in every way, on every machine, moved
+//! and turned about.
 
 use nearmiss::Query;
 use nearmiss::contacts::{Kind, NearPair, Rows, Status};
@@ -93,7 +94,8 @@ fn every_way_and_every_machine_finds_the_same() {
     }
 }
 
-/// Pairs whose distance is the one that is asked, but for a rounding or two of doubles: whatever the volume, the same are listed.
+/// Pairs at the query's distance, up to a rounding or two of doubles: the same are listed by any
+/// volume.
 #[test]
 fn what_rounding_cannot_tell_is_the_same_for_every_volume() {
     let mut r = SmallRng::seed_from_u64(77);
@@ -231,7 +233,7 @@ fn lists_grow() {
     }
 }
 
-/// A moving body is asked where it is at t = 0; what has no triangles has no pairs.
+/// A moving body is tested at its positions at t = 0. A body without triangles has no pairs.
 #[test]
 fn only_the_start_is_looked_at() {
     let moving = scene::soup(60, 5, true).expect("a scene");
@@ -268,7 +270,8 @@ fn a_hash_tells_answers_apart() {
     }
 }
 
-/// Real cloth: what comes within a twentieth of an edge, beside the certified step without motion.
+/// Real cloth: pairs within a twentieth of an edge, compared with the certified step without
+/// motion.
 #[test]
 #[cfg_attr(not(public_data), ignore = "no public test data: set NEARMISS_DATA")]
 fn real_cloth_agrees_with_the_step_without_motion() {
@@ -281,7 +284,7 @@ fn real_cloth_agrees_with_the_step_without_motion() {
     let all: BTreeSet<_> = step.contacts().iter().map(|c| (c.kind, c.feature_a, c.feature_b)).collect();
     println!("{} near, {} by the step", rows.len(), all.len());
     assert!(rows.len() > 10_000 && rows.is_subset(&all));
-    // What the step lists beyond is nearer than the distance and its tolerance.
+    // Further rows of the step are nearer than the distance and its tolerance.
     let farther = near.len() + 20;
     assert!(all.len() <= farther, "{} of {farther}", all.len());
 }

@@ -1,5 +1,5 @@
-//! Pairs of hostile families, asked of the kernels' functions and of exact fractions: none is missed, and what is told is within its
-//! bound.
+//! Pairs of hostile families, by the kernels' functions and by exact fractions: none is missed, and
+//! the result is within its bound.
 
 use nearmiss_kernels::exec::RowMap;
 use nearmiss_kernels::math::tolerance::{DISTANCE_ERROR, DISTANCE_LISTED, U64};
@@ -99,7 +99,7 @@ fn family(r: &mut SmallRng, name: &str, single: bool) -> Points {
     }
 }
 
-/// Distances worth asking: the exact one and its neighbours, and others.
+/// Distances worth a test: the exact one and its neighbours, and others.
 fn distances(r: &mut SmallRng, near: f64, reach: f64) -> [f64; 6] {
     let some = r.random_range(0.5..2.0);
     let all =
@@ -116,12 +116,12 @@ fn filtered<R: Real>(features: Features, points: Points, distance: f64) -> bool 
     }
 }
 
-/// What a hunt has seen.
+/// Findings of a hunt.
 #[derive(Default, Debug)]
 struct Seen {
     asked: u32,
     within: u32,
-    /// Listed, but farther apart than asked.
+    /// Listed, but farther apart than the query's distance.
     beyond: u32,
     /// Not certain.
     undecided: u32,
@@ -135,7 +135,7 @@ fn hunt<R: Real>(name: &str, seen: &mut Seen) {
     let mut r = SmallRng::seed_from_u64(name.len() as u64 + 64 * size_of::<R>() as u64);
     for i in 0..PAIRS {
         let features = [Features::VertexFace, Features::EdgeEdge][i % 2];
-        // As the precision has them; doubles too large for f32 are not asked in it.
+        // As the precision has them; doubles too large for f32 are not tested in it.
         let points = family(&mut r, name, !R::WIDE).map(|p| p.map(|x| R::of(x).wide()));
         let (truth, reach) = (distance_squared(features, points), reach(features, points));
         let near = truth.to_f64().sqrt();

@@ -23,7 +23,7 @@ fn is(features: Features, points: Points, squared: f64, at: [f64; 3], closest: C
     }
 }
 
-/// A vertex over, beside and at a corner of a triangle.
+/// A vertex over a triangle, next to it and at a corner of it.
 #[test]
 fn a_vertex_and_a_face() {
     let face = |v: [f64; 3]| [v, [0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
@@ -109,7 +109,7 @@ fn pair(
     }
 }
 
-/// A rod and a point of their own, beside a triangle: each pair of them once.
+/// A rod and a point of their own, next to a triangle: each pair of them once.
 #[test]
 fn edges_and_points_of_a_mesh() {
     // A triangle, a rod a b b one above it, and a point p p p one above the rod.

@@ -1,4 +1,4 @@
-//! The oracle of distances itself: known answers, and beside points that are tried one by one.
+//! The oracle of distances itself: known answers, and points that are tried one by one.
 
 use nearmiss_lab::case::Features;
 use nearmiss_lab::oracle::near::{Shape, all_within, distance_squared, squared_at};

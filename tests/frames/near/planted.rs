@@ -44,7 +44,7 @@ fn a_fault_in_a_frame_is_named() {
     for closest in [Closest::VertexEdge, Closest::VertexVertex, Closest::EdgeEdge] {
         assert!(with(&|all| all[inside].closest = closest).ends_with("another feature is nearest"));
     }
-    // One that is farther apart than asked.
+    // One that is farther apart than the query's distance.
     let far = ask(engine(), bodies.clone(), Query::near(2.0 * DISTANCE)).near().to_vec();
     assert!(truth.fault(&far).expect_err("a fault").ends_with("farther than the query's distance"));
 }

@@ -26,7 +26,7 @@ fn a_wrong_expectation_is_named() {
         let one = all.iter_mut().find(|q| q.id == id).expect("a question");
         one.expect = wrong;
         assert!(names(&ask_questions(&engine(), &all).expect("answers"), id), "{id}");
-        // One that is as expected is asked as well, so that the suite is not wrong throughout.
+        // A correct one is run as well, so that the suite is not wrong throughout.
         all.retain(|q| q.id == id || q.id == "X24");
         assert!(names(&ask_turned_questions(&engine(), &all).expect("answers"), id), "{id}, turned");
     }

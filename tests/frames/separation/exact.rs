@@ -1,5 +1,6 @@
-//! Pairs whose least distance is a whole number, reached along a Pythagorean vector: in every direction and by features of
-//! every kind, at the start, at the end and in passing. One frame asks hundreds of them.
+//! Pairs whose least distance is a whole number, reached along a Pythagorean vector: in every
+//! direction and by features of every kind, at the start, at the end and in passing. One frame has
+//! hundreds of them.
 
 use super::asking;
 use nearmiss::contacts::{Contact, Kind, Status};
@@ -33,7 +34,7 @@ fn small(a: Point) -> Point {
     a.map(|x| x / gcd)
 }
 
-/// What comes near.
+/// The features that come near.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Near {
     /// A vertex over the inside of a face.
@@ -116,7 +117,8 @@ fn bodies(pairs: &[Pair], scale: f64, at: f64, wide: bool) -> Vec<Body> {
     vec![Body::deformable(mesh(|x| x.still)), Body::moving(mesh(|x| x.from), mesh(|x| x.to)).expect("frames")]
 }
 
-/// What was found of pair `i`'s nearest features. Edge 0 of a triangle of three new vertices joins its first two.
+/// The contact of pair `i`'s nearest features. Edge 0 of a triangle of three new vertices joins its
+/// first two.
 fn found(all: &Contacts, i: u32, near: Near) -> Option<&Contact> {
     let is = |c: &&Contact| match near {
         Near::Edges => c.kind == Kind::Ee && (c.feature_a, c.feature_b) == (3 * i, 3 * i),
@@ -188,7 +190,7 @@ fn what_is_farther_is_not_found() {
     }
 }
 
-/// A separation far below what f32 tells (X39): nothing is lost, and doubles tell.
+/// A separation far below the resolution of f32 (X39): nothing is lost, and doubles decide.
 #[test]
 fn a_separation_below_the_precision_loses_nothing() {
     let pairs = every(&mut SmallRng::seed_from_u64(43));

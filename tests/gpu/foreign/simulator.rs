@@ -6,8 +6,8 @@ use std::ffi::{CString, c_void};
 use std::ptr::null_mut;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// While it is held no other test of this program drives a simulator: nothing else may wait for the device while one records, and
-/// what two at once take is nobody's time.
+/// While it is held no other test of this program drives a simulator. Nothing else may wait for the
+/// device while one records, and times of two at once belong to neither.
 pub fn alone() -> MutexGuard<'static, ()> {
     static ALONE: Mutex<()> = Mutex::new(());
     ALONE.lock().unwrap_or_else(PoisonError::into_inner)
@@ -72,7 +72,8 @@ impl Simulator {
         let mut arrays = [0; 3];
         let bytes = size_of_val(start);
         let text = CString::new(STEP).expect("no zero");
-        // SAFETY: the driver's calls in the order that it asks for, with places of ours to write to.
+        // SAFETY: the driver's calls in the order that it requires, with our own memory to write
+        // to.
         unsafe {
             let mut device = 0;
             ok(sys::cuInit(0));
@@ -108,7 +109,7 @@ impl Simulator {
         self.stream.cast()
     }
 
-    /// Where the vertices lie, at both ends of the step.
+    /// Addresses of the vertices, at both ends of the step.
     pub fn positions(&self) -> [u64; 2] {
         [self.arrays[0], self.arrays[1]]
     }

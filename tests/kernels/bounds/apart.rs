@@ -8,7 +8,8 @@ use nearmiss_lab::oracle::near::{Squared, triangles_squared};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
-/// Two triangles: ordinary, flat, points, small beside their distance, far from the origin, tiny, huge.
+/// Two triangles: ordinary, flat, points, small compared with their distance, far from the origin,
+/// tiny, huge.
 fn pair(r: &mut SmallRng, kind: u32) -> [Triangle; 2] {
     let by = |r: &mut SmallRng, size: f64| [(); 3].map(|()| size * r.random_range(-1.0..1.0));
     let way = by(r, 3.0);
@@ -29,7 +30,8 @@ fn above(length: f32, squared: &Squared) -> bool {
     length > 0.0 && squared.is_within(f64::from(length).next_down())
 }
 
-/// By how much the gap without [`APART_DOWN`] may be above the true one, in parts of that, where it is; and how many gaps told something.
+/// By how much the gap without [`APART_DOWN`] may exceed the true one, in parts of that, if there
+/// is one; and the number of gaps that count.
 fn measure<V: Volume>(name: &str) -> (f64, u32) {
     let mut r = SmallRng::seed_from_u64(36);
     let (mut most, mut told) = (f64::MIN, 0);

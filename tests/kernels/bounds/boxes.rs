@@ -57,7 +57,8 @@ fn box_length() {
     held("BOX_LENGTH", "f32", &Hunt { starts: 24, ..Hunt::new(52) }.most::<f32>(|r| plain(r, 18), ratio));
 }
 
-/// What the difference of a point to a box's centre gives along its axes: computed, truth, and `|a| . |p - c|`.
+/// Extent of a point's difference from a box's centre along its axes: computed, truth, and `|a| .
+/// |p - c|`.
 fn slabs<R: Real>(x: &[f64]) -> Vec<(Exact, Exact, Exact)> {
     let volume = fitted::<R>(x, false);
     let c = Vec3(volume.c);
@@ -147,7 +148,7 @@ fn box_group() {
     of::<f64>("f64");
 }
 
-/// What is lost beyond the relative padding, over the allowance for underflow.
+/// The loss beyond the relative padding, over the allowance for underflow.
 fn group_lost<R: Real>(x: &[f64]) -> f64 {
     let part = |(said, truth, about): &(Exact, Exact, Exact)| {
         ((said - truth).abs() - Exact::of(BOX_GROUP) * about).over(&Exact::of(BOX_GROUP_UNDERFLOW))

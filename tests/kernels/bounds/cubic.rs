@@ -108,8 +108,9 @@ fn cubic_underflow() {
     of::<f64, f64>("f64", [size(-536), size(-536), s], (half64 * &scale, 18.0));
 }
 
-/// What the allowance is for, as a contact: a vertex that rests in a face whose extent on one axis is about the smallest
-/// f32, beside a million on the others. Rounded to f32 the three heights no longer belong together.
+/// The allowance, shown by a contact. A vertex rests in a face whose extent on one axis is about
+/// the smallest f32, and a million on the others. Rounded to f32 the three heights no longer belong
+/// together.
 #[test]
 fn a_faint_axis_rejects_nothing() {
     let faint = |parts: f64| parts * f64::from(f32::from_bits(1));

@@ -71,7 +71,7 @@ fn changed<R: Real>(r: &mut SmallRng, x: f64) -> f64 {
     }
 }
 
-/// What is wrong with a bound of which an error takes that part.
+/// The fault of a bound of which an error takes that part.
 pub fn fault(ratio: f64) -> Option<&'static str> {
     if !(ratio <= 1.0) {
         Some("the bound is broken")
@@ -115,7 +115,7 @@ fn faults_are_named() {
     // A search that measures nothing is no proof.
     let nothing = Hunt::new(1).most::<f32>(|r| plain(r, 2), |_| f64::NAN);
     assert!(fault(nothing.ratio).is_some());
-    // What is planted is found: the rounding of a sum, at half a unit and not beyond.
+    // A planted fault is found: the rounding of a sum, at half a unit and not beyond.
     let sum = |x: &[f64]| (f64::from((x[0] + x[1]) as f32) - (x[0] + x[1])).abs() / (x[0] + x[1]).abs();
     let found = Hunt::new(2).most::<f32>(|r| plain(r, 2), sum);
     let part = found.ratio / f64::from(f32::EPSILON / 2.0);

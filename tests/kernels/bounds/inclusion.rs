@@ -31,7 +31,7 @@ fn controls<R: Real, S: Real, const N: usize>(x: &[Moving<R>; 4], m: &Local<S, N
     let p = x.map(|m| [point(m.t0), point(m.t1)]);
     let of = |i: usize| if N == 3 { (0, 1 + i) } else { (i / 2, 2 + i % 2) };
     let w: [[Point; 2]; N] = std::array::from_fn(|i| [0, 1].map(|t| less(&p[of(i).0][t], &p[of(i).1][t])));
-    // The units are a power of two: told by the largest component, of which at most a unit was lost.
+    // The units are a power of two, found by the largest component, which lost at most a unit.
     let mut largest = (0.0, 1.0);
     for (said, truth) in m.w.iter().flatten().flat_map(|v| v.0).zip(w.iter().flatten().flatten()) {
         if said.wide().abs() > largest.0 {

@@ -35,7 +35,7 @@ fn controls<R: Real, S: Grid, const N: usize>(x: &[Moving<R>; 4], pair: &Pair<S,
     std::array::from_fn(|i| [0, 1].map(|t| less(&p[of(i).0][t], &p[of(i).1][t]).map(|x| x * &scale)))
 }
 
-/// Where a control vector is at a time.
+/// A control vector at a time.
 fn at([start, end]: &[Point; 2], t: &Exact) -> Point {
     let before = &Exact::of(1.0) - t;
     [0, 1, 2].map(|k| &start[k] * &before + &end[k] * t)
@@ -51,7 +51,7 @@ fn largest(v: &Point) -> Exact {
     v.iter().map(|x| x.clone().abs()).fold(Exact::zero(), larger)
 }
 
-/// Five kinds are asked each time.
+/// Five kinds are measured each time.
 fn brief(seed: u64) -> Hunt {
     Hunt { starts: 4, steps: 700, ..Hunt::new(seed) }
 }
@@ -158,8 +158,8 @@ fn isolate_place() {
     each_pair!("ISOLATE_PLACE", brief(73), 1, ratio);
 }
 
-/// What a look at the hull rests on: corners as computed, a direction, and how far corners may be from the exact ones
-/// within `half` of a time.
+/// Premises of a look at the hull: corners as computed, a direction, and how far corners may be
+/// from the exact ones within `half` of a time.
 struct Looked<S: Real, const N: usize> {
     x: [Vec3<S>; N],
     n: Vec3<S>,
@@ -293,7 +293,7 @@ fn isolate_window() {
         if most.is_finite() { most } else { f64::NAN }
     }
     each_pair!("ISOLATE_WINDOW", Hunt { starts: 12, ..brief(77) }, 0, ratio);
-    // An axis on which differences underflow must not tell a time.
+    // An axis on which differences underflow must not give a time.
     let faint = |r: &mut SmallRng| {
         let size = |i: usize| if i.is_multiple_of(3) { f64::from(f32::from_bits(4)) } else { 1.0 };
         plain(r, 24).into_iter().enumerate().map(|(i, x)| size(i) * x).collect()
@@ -302,8 +302,9 @@ fn isolate_window() {
     held("ISOLATE_WINDOW", "f64 in f32, an axis faint", &hunt.most::<f64>(faint, ratio::<f64, f32, 3>));
 }
 
-/// Measured: the error of a direction's product with a control vector at a time, of what one component of a point may be
-/// off times the direction's sum; and, in f32, how far the computed nearest point is from the exact hull (told in f64).
+/// Measured: the error of a direction's product with a control vector at a time, as a part of a
+/// component's error times the direction's sum. In f32 also the distance of the computed nearest
+/// point from the exact hull (computed in f64).
 #[test]
 fn advance_point() {
     fn ratio<R: Real, S: Grid, const N: usize>(x: &[f64]) -> f64

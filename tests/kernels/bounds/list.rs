@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-/// What no proof of an answer rests on, or what is no allowance.
+/// Constants on which no proof of an answer rests, or which are no allowance.
 const OTHERS: [(&str, &str); 26] = [
     ("U32", "the unit"),
     ("U64", "the unit"),

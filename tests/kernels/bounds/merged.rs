@@ -1,5 +1,6 @@
-//! Oriented boxes in one another and beside one another: `bv::obb`. Their proofs ask of axes only that these are nearly
-//! orthonormal, so the search takes axes that are as far from it as the proofs allow: no fit makes such.
+//! Oriented boxes inside one another and next to one another: `bv::obb`. Their proofs need only
+//! axes that are nearly orthonormal. So the search takes axes as far from it as the proofs allow:
+//! no fit makes such.
 
 use super::boxes::skew;
 use super::exact::{Exact, Point, cross, det, dot, less, point};
@@ -46,8 +47,9 @@ fn volume(axes: &[f64], c: Vec3<f32>, h: Vec3<f32>) -> Obb {
     Obb { c: c.0, a0: vector(axes).0, a1: vector(&axes[3..]).0, h: h.0, slack, pad: 0 }
 }
 
-/// Measured: how far a box reaches along another's axes beyond what is computed, of what is added. Of two boxes with axes
-/// (0 to 5, 6 to 11), the second's centre and half extents (12 to 17).
+/// Measured: how far a box reaches along another's axes beyond the computed reach, as a part of the
+/// addition. Arguments are two boxes with axes (0 to 5, 6 to 11), the second's centre and half
+/// extents (12 to 17).
 #[test]
 fn box_child() {
     let ratio = |x: &[f64]| {

@@ -31,7 +31,7 @@ fn plane<R: Real>(x: &[f64]) -> [Exact; 2] {
     [(Exact::of(said) - &truth).abs(), Exact::of(bound)]
 }
 
-/// What of an error is left for one part of a bound to cover, over that part.
+/// The rest of an error that one part of a bound must cover, over that part.
 fn left(error: &Exact, bound: &Exact, part: &Exact) -> f64 {
     (error - &(bound - part)).over(part)
 }

@@ -60,7 +60,7 @@ fn a_list_is_counted_by_its_own_counter_past_its_end() {
                 launched::<append_to_both>(&device, blocks, (BOTH, &Counts::default())).expect("no fault");
             let lanes = 64 * blocks as u64;
             let mut wanted = Counts::default();
-            // Of 64 lanes 21 append one and 21 two.
+            // In 64 lanes, 21 append one and 21 two.
             wanted[counter::VF] = 63 * blocks as u64;
             wanted[counter::EE] = lanes;
             wanted[counter::UNDECIDED] = 2 * lanes;
@@ -86,7 +86,7 @@ fn a_list_has_as_many_entries_as_were_counted_or_there_is_room_for() {
     }
 }
 
-/// What has no list has no counter: the sanitizer names who counts there, whichever list it is.
+/// A kernel without a list has no counter: the sanitizer names the counting lane, for any list.
 #[test]
 fn appending_to_no_list_is_noticed() {
     let device = support::sanitizer(Order::Forward);

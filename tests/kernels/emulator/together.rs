@@ -39,7 +39,7 @@ kernels! { [Args], 64, 4096;
         b.phase(|l| if l.lane() == 0 { l.write(a.of_block, block, least) });
     }
     last_block |b, a| {
-        // Each block gives its lanes' numbers; whoever draws the last ticket adds up all of them.
+        // Each block gives its lanes' numbers; the block with the last ticket adds up all of them.
         b.phase(|l| l.store_relaxed(a.out, l.global(), l.read(a.given, l.global())));
         let (ticket, lanes, blocks) = (b.ticket(a.counters, 0), b.lanes(), b.blocks());
         if ticket + 1 == blocks as u64 {
@@ -121,7 +121,7 @@ fn launch<E: Entry<Args = Args>>(device: &Device, blocks: u32) -> Result<Words, 
     Ok((out.read(all)?, of_block.read(blocks as usize)?, list.read(2 * all)?, counters.read(2 + all)?))
 }
 
-/// What the sanitizer says of a kernel that breaks a rule.
+/// The sanitizer's verdict on a kernel that breaks a rule.
 fn verdict<E: Entry<Args = Args>>(order: Order, interleave: Option<u64>, blocks: u32) -> String {
     match launch::<E>(&emulator(Mode::Sanitizer(order), interleave), blocks) {
         Ok(_) => format!("{}: nothing seen in {order:?}, interleaved {interleave:?}", E::NAME),
@@ -307,7 +307,7 @@ fn a_wait_for_a_block_that_has_not_started_is_named() {
     let named = "kernel waits_for_a_block: an endless wait at block 0, phase 0, lane 0";
     let forward = verdict::<waits_for_a_block>(Order::Forward, None, 3);
     assert!(forward.contains(named), "{forward}");
-    // Where all three run at once, or block 0 comes last, the wait ends: both hide it.
+    // If all three run at once, or block 0 comes last, the wait ends: both hide it.
     assert!(verdict::<waits_for_a_block>(Order::Forward, Some(1), 3).contains("nothing seen"));
     assert!(verdict::<waits_for_a_block>(Order::Reverse, None, 3).contains("nothing seen"));
 }

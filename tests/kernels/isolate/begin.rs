@@ -1,4 +1,5 @@
-//! When an answer begins: who asks for the earliest time alone leaves out pairs by when they begin, so no answer may begin sooner.
+//! The begin of an answer: an earliest query leaves out pairs by their begin, so no answer may
+//! begin sooner.
 
 use nearmiss_kernels::bv::{Linear, Volume};
 use nearmiss_kernels::bvh::horizon::Horizon;
@@ -10,7 +11,7 @@ use nearmiss_kernels::prim::sweep::meeting;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
-/// Where a pair may begin: the begin of its window with the margin, and without.
+/// Possible begin of a pair: the begin of its window with the margin, and without.
 fn begins<const N: usize>(pair: &Pair<f32, N>) -> Option<[f32; 2]> {
     let window = pair.window()?;
     Some([pair.with_margin(window).0, window.0])

@@ -19,7 +19,7 @@ fn note(shares: &mut Shares, rung: Rung, verdict: &Verdict) {
     shares.entry(rung).or_default()[at] += 1;
 }
 
-/// Asks in `R`, by all rungs and by some; the first fault.
+/// Tests in `R`, by all rungs and by some; returns the first fault.
 fn ask<R: Real>(all: &[Built], tolerances: &[f64], shares: &mut Shares) -> Option<String> {
     for built in all {
         let truth = first_contact(&built.case);
@@ -60,7 +60,7 @@ fn built_motions_are_judged_by_the_oracle() {
         assert_eq!(ask::<f32>(&single, &[tolerance], &mut shares), None);
     }
     print("all kinds", &shares);
-    // Of what slices leave nothing built in integers is far.
+    // After slices, nothing built in integers is far.
     let idle = |rung: &Rung| *rung != Rung::Near && !shares.contains_key(rung);
     let idle: Vec<Rung> = Rung::ALL.into_iter().filter(idle).collect();
     assert!(idle.is_empty(), "rungs that decide nothing: {idle:?}");

@@ -9,7 +9,7 @@ use support::fuzz::continuous::fault;
 
 type Points = [[f64; 3]; 4];
 
-/// What a motion is, which features, its points at both ends, the rung.
+/// The name of a motion, its features, its points at both ends, the rung.
 type Known = (&'static str, Features, [Points; 2], Rung);
 
 const VF: Features = Features::VertexFace;
@@ -155,7 +155,7 @@ fn case(features: Features, [positions_t0, positions_t1]: [Points; 2]) -> Case {
 fn known_motions_are_decided_by_their_rung() {
     let mut wrong = Vec::new();
     for (what, features, points, rung) in all() {
-        // A time that f32 can tell, where it is to tell.
+        // A time within the resolution of f32, if f32 must find it.
         let p = Params::new(if rung == Rung::Single { 1e-4 } else { 1e-6 });
         let case = case(features, points);
         let (by, verdict) = deciding::<f64>(&case, &p);
@@ -170,7 +170,8 @@ fn known_motions_are_decided_by_their_rung() {
             let said = certified::<f64>(&case, rungs, &p);
             let name = format!("{what}, {rungs:?}: {said:?}");
             assert_eq!(fault(&said, truth.as_ref()), None, "{name}");
-            // What touches at the start is always certain; so is what passes through in its course.
+            // Features that touch at the start are always certain; so are those that pass through
+            // during the step.
             if let Some(truth) = &truth
                 && (at_start || rung <= Rung::Double && rungs != Rungs::Single)
             {

@@ -1,5 +1,5 @@
-//! What the certificates rest on, against contacts whose times are known exactly; and each of it weakened, which is seen
-//! to be wrong.
+//! Premises of the certificates, against contacts whose times are known exactly. Each of them is
+//! weakened, and the weak one is seen to be wrong.
 
 use super::rung::{certified, deciding, points};
 use nearmiss_kernels::math::tolerance::Tolerance;
@@ -21,7 +21,7 @@ fn contacts(seed: u64, n: usize) -> impl Iterator<Item = (Built, f64)> {
     built(seed, n, REACH_F32).into_iter().filter(fits).filter_map(|built| built.toi.map(|toi| (built, toi)))
 }
 
-/// Something told of a pair of either kind.
+/// A property of a pair of either kind.
 trait Ask {
     type Outcome;
     fn ask<const N: usize>(self, pair: &Pair<f32, N>) -> Self::Outcome;
@@ -150,7 +150,7 @@ fn a_cubic_with_less_error_would_reject_contacts() {
     assert!(most > 1.0 / 40.0, "an error of one rounding would be noticed: {most}");
 }
 
-/// What is said around a time, looking from a little off; and at that moment alone.
+/// Verdicts around a time, looking from a little off; and at that moment alone.
 struct Looks {
     toi: f64,
     off: f64,

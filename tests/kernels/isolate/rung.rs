@@ -1,4 +1,4 @@
-//! Which rung decides a pair, by the ladder's own parts, put together anew.
+//! The rung that decides a pair, by the ladder's own parts, put together again.
 
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::Moving;
@@ -9,7 +9,7 @@ use nearmiss_kernels::prim::isolate::ladder::{
 use nearmiss_kernels::prim::isolate::{Edges, Face, Pair, Rungs, ee_certified, vf_certified};
 use nearmiss_lab::{Case, Features};
 
-/// What decides.
+/// The deciding rung.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Rung {
     /// The moving boxes never meet.
@@ -22,11 +22,11 @@ pub enum Rung {
     Together,
     /// Isolation in f32.
     Single,
-    /// A direction that parts what stays in one plane, as far as f32 can tell.
+    /// A direction that parts features which stay in one plane, within the resolution of f32.
     Parted,
     /// Isolation in f64.
     Double,
-    /// A closer look of it that tells no more than that they are near.
+    /// A closer look of it that finds only that they are near.
     Close,
     /// Touching at the start.
     Touch,
@@ -64,7 +64,7 @@ pub fn points<R: Real>(case: &Case) -> [Moving<R>; 4] {
     [0, 1, 2, 3].map(|i| Moving { t0: at(case.positions_t0[i]), t1: at(case.positions_t1[i]) })
 }
 
-/// What the ladder says.
+/// The ladder's verdict.
 pub fn certified<R: Real>(case: &Case, rungs: Rungs, p: &Params) -> Verdict {
     let [a, b, c, d] = points::<R>(case);
     match case.features {

@@ -9,7 +9,8 @@ use nearmiss_lab::pairs::built::{Built, built};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
-/// What came of the claims: how many, how many of half the distance that are false of all of it, and a false one.
+/// Outcome of the claims: how many, how many of half the distance that are false of all of it, and
+/// a false one.
 #[derive(Default)]
 struct Outcome {
     claims: u32,
@@ -17,7 +18,7 @@ struct Outcome {
     fault: Option<String>,
 }
 
-/// What is asked: whether the features stay farther apart from one time to another.
+/// The claim: whether the features stay farther apart from one time to another.
 type Plane<S, const N: usize> = fn(&Pair<S, N>, (S, S), S) -> bool;
 
 fn turned<S: Grid, const N: usize>(pair: &Pair<S, N>, (from, to): (S, S), over: S) -> bool {

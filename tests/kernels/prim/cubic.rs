@@ -70,7 +70,7 @@ fn near_misses() {
     };
     let face = [[0, 0, 0], [8, 0, 0], [0, 8, 0]];
     let with = |p: Point, f: [Point; 3]| [p, f[0], f[1], f[2]];
-    // In the plane of the face, passing by; resting beside it; resting above it.
+    // In the plane of the face, passing by; resting next to it; resting above it.
     far([with([9, -4, 0], face), with([9, 8, 0], face)], true);
     far([with([5, 5, 0], face); 2], true);
     far([with([2, 2, 1], face); 2], true);
@@ -101,7 +101,7 @@ fn near_misses() {
     hit([with([2, 2, 6], face), with([2, 2, -2], face)], true, 0.75);
 }
 
-/// Whatever is finite gives a time or none, never NaN and never -0.0.
+/// Every finite input gives a time or none, never NaN and never -0.0.
 #[test]
 fn any_finite_input() {
     let mut r = random(43);

@@ -25,7 +25,8 @@ fn coordinate(r: &mut SmallRng, kind: usize, near: f64) -> f64 {
     }
 }
 
-/// Four points in motion: of small extent beside their distance to the origin, nearly flat, on a grid.
+/// Four points in motion: of small extent compared with their distance to the origin, nearly flat,
+/// on a grid.
 fn motion<R: Real>(r: &mut SmallRng, kind: usize) -> [Moving<R>; 4] {
     let mut near = 0.0;
     let mut point = || {

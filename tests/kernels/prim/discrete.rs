@@ -47,7 +47,7 @@ fn all_signs<R: Real>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> [i32; SIGNS as usiz
     std::array::from_fn(|which| sign::<R, Exact>(p, q, which as u32).expect("the exact sign"))
 }
 
-/// Each of the signs matters: with any one of them turned, some pair is told the other answer.
+/// Each of the signs matters: with any one of them turned, some pair gets the other answer.
 #[test]
 fn a_sign_that_is_turned_is_noticed() {
     let mut r = random(6);
@@ -147,7 +147,8 @@ fn mixed_exponents() {
     assert!(met > 15 && met < 90, "{met}");
 }
 
-/// The floating test of the seed is right where nothing touches; how often it is not on grids is printed.
+/// The floating test of the paper is right if nothing touches; the number of its faults on grids is
+/// printed.
 #[test]
 fn moller_errs_only_where_it_is_close() {
     let mut r = random(5);

@@ -40,7 +40,7 @@ fn well_formed(v: &Verdict, params: &Params) {
     assert!(v.boxes <= params.max_iterations, "{v:?}");
 }
 
-/// What was wrong with answers to motions that meet at a known time, or before.
+/// Faults of answers to motions that meet at a known time, or before.
 #[derive(Debug, Default)]
 struct Judge {
     missed: u32,
@@ -63,7 +63,7 @@ impl Judge {
     }
 }
 
-/// Asks `n` motions of each family, kind and reach; tolerances from a thousandth of it to none.
+/// Tests `n` motions of each family, kind and reach; tolerances from a thousandth of it to none.
 fn built(
     seed: u64,
     n: usize,

@@ -155,7 +155,8 @@ fn cuts_never_lose_a_root() {
     assert!(lost::<f64>(&mut r, 0.0) > 100 && lost::<f64>(&mut r, 0.25) > 10);
 }
 
-/// What is left of a cell holds all of the grid that the cuts leave, and halves share their middle alone.
+/// The rest of a cell holds all of the grid that the cuts leave, and halves share their middle
+/// alone.
 #[test]
 fn cells_round_outward() {
     let mut r = random(92);

@@ -1,4 +1,5 @@
-//! The catalogue's questions asked of the certified tests themselves, and how near things are when they stop.
+//! The catalogue's pairs, by the certified tests themselves; and how near things are when they
+//! stop.
 
 use super::inclusion::{certified, in_passes};
 use super::random;
@@ -15,8 +16,8 @@ fn moving(t0: &Four, t1: &Four) -> [Moving<f64>; 4] {
     [0, 1, 2, 3].map(|i| Moving { t0: Vec3(t0[i]), t1: Vec3(t1[i]) })
 }
 
-/// What was said in f64, in f32 and in passes; and, where the numbers are exact there, from positions in f32. True: in
-/// f32 alone.
+/// Verdicts in f64, in f32 and in passes; and, if the numbers are exact there, from positions in
+/// f32. True: in f32 alone.
 fn said(q: &Question) -> Vec<(&'static str, Verdict, bool)> {
     let x = moving(&q.case.positions_t0, &q.case.positions_t1);
     let (face, p) = (q.case.features == Features::VertexFace, q.params());
@@ -54,7 +55,7 @@ fn with(p: [f64; 3], f: [[f64; 3]; 3]) -> Four {
     [p, f[0], f[1], f[2]]
 }
 
-/// Whatever is not a number rejects nothing; what is tiny or huge gives well-formed answers.
+/// NaN rejects nothing; tiny and huge numbers give well-formed answers.
 #[test]
 fn any_bits() {
     let mut r = random(95);
@@ -111,7 +112,8 @@ fn distance(x: [Vec3<f64>; 4], face: bool) -> f64 {
     best
 }
 
-/// Where it stops, features are as near as promised; where it does not, never nearer than the separation at any time.
+/// If it stops, features are as near as promised; otherwise they are never nearer than the
+/// separation.
 #[test]
 fn stops_near_contact_only() {
     let mut r = random(96);

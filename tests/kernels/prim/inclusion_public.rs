@@ -38,7 +38,7 @@ fn queries() {
                     }
                 }
                 cubic[f.face as usize] += (!m.meets && m.found::<f64, f64>(f.face)) as u32;
-                // Rounded positions ask another question; only what f32 holds must be found.
+                // Rounded positions are another pair; only contacts that f32 holds must be found.
                 let rounded = certified::<f32, f32>(moving(&m.points), f.face, &p);
                 assert!(!(m.fits_f32() && m.meets && rounded.is_separated()), "{}: missed", f.name);
                 let exact = certified::<f32, f64>(moving(&m.points), f.face, &p);
@@ -124,7 +124,7 @@ fn frames(folder: &str, before: &str, after: &str, most: usize) {
     filters(&all, &truth, &p);
 }
 
-/// What each filter removes: no true contact.
+/// Pairs that each filter removes: no true contact.
 fn filters(all: &[(Key, [Moving<f32>; 4])], truth: &HashSet<Key>, p: &Params) {
     let names = ["axes and coplanarity, exact positions", "axes", "planes", "axes or planes", "all"];
     let mut removed = [0; 5];

@@ -135,7 +135,7 @@ fn the_checker_is_exact() {
         let triangle = wild.triangle::<f64>();
         let mut volume: Obb = leaf(triangle);
         let p = triangle[0][0];
-        // Through the point, as nearly as floats can tell.
+        // Through the point, as nearly as floats can resolve.
         let i = (wild.rng.bits() % 3) as usize;
         let a = volume.axes()[i].wide();
         let s = a.dot(p - Vec3(volume.c).wide()).abs() as f32;
@@ -241,7 +241,7 @@ fn a_faulty_merge_is_noticed() {
     assert!(else_if > 300 && forgotten > 900 && still_end > 900, "{else_if} {forgotten} {still_end}");
 }
 
-/// What is too large for a float, or too small, still is in its box.
+/// A number too large for a float, or too small, still is in its box.
 #[test]
 fn ends_of_the_range_are_held() {
     let big = 2f64.powi(480);

@@ -1,4 +1,5 @@
-//! Boxes that move: those that meet at one instant meet, those that never do are told apart.
+//! Boxes that move: those that meet at one instant overlap, and those that never meet are found
+//! apart.
 
 use nearmiss_kernels::bv::{Linear, Volume};
 use nearmiss_kernels::math::Vec3;
@@ -48,7 +49,7 @@ fn meet(cases: usize) {
     }
 }
 
-/// Who asks for both ends apart, but not on the same side, passes over pairs that meet in between.
+/// A test for both ends apart, but not on the same side, passes over pairs that meet in between.
 #[test]
 fn a_cheap_half_that_forgets_sides_is_noticed() {
     let forgets = |a: &Linear, b: &Linear| {
@@ -127,7 +128,7 @@ fn boxes_that_never_meet_are_told_apart() {
         use nearmiss_kernels::bv::Aabb;
         swept += usize::from(!Volume::overlaps(&<Aabb as Volume>::moving(a0, a1), &Volume::moving(b0, b1)));
     }
-    // What swept boxes tell apart, the cheap half of moving ones, and all of them.
+    // Pairs found apart by swept boxes, by the cheap half of moving ones, and by all of them.
     assert!(apart > 60_000 && swept < apart - 20_000, "{apart} {swept}");
     assert!(swept < cheaply && cheaply < apart, "{apart} {cheaply} {swept}");
 }
@@ -171,7 +172,7 @@ fn a_box_until_a_time_is_around_what_was_in_it() {
                 f64::from(part.hi1[k]) > hi && f64::from(part.hi1[k]) < hi + room,
                 "{all:?} {until} {part:?}"
             );
-            // Who does not round outward cuts something off.
+            // Without rounding outward, something is cut off.
             planted += (((all.hi0[k] * (1.0 - until) + all.hi1[k] * until) as f64) < hi) as u32;
         }
     }

@@ -191,7 +191,7 @@ fn merges_are_no_larger_than_need_be() {
             }))
         };
         let merged = a.merge(&b).h.map(f64::from);
-        // What paddings may add to plates and needles.
+        // Most that paddings may add to plates and needles.
         let size: f64 = merged.iter().sum();
         let (merged, pad) = (surface(merged), 1e-4 * size * size);
         let (one, two) = (with(a.axes()), with(b.axes()));

@@ -6,8 +6,8 @@ use nearmiss_kernels::abi::{
 };
 use nearmiss_kernels::bvh::{Violation, check_filters};
 
-/// Of the five triangles of the tree the first two are of body 0 in environment 1, the next two of body 1 in environment 0,
-/// tested against itself, the last of body 2 in every one.
+/// The tree has five triangles. The first two are of body 0 in environment 1, the next two of body
+/// 1 in environment 0, tested against itself, the last of body 2 in every one.
 fn whose(triangle: u32) -> NodeFilter {
     let [body, environment, self_collision] = match triangle - 10 {
         0 | 1 => [0, 1, 0],

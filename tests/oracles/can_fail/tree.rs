@@ -4,7 +4,8 @@ use nearmiss_kernels::abi::{LEAF, Link, Node};
 use nearmiss_kernels::bv::Aabb;
 use nearmiss_kernels::bvh::{self, Violation, check, check_volumes};
 
-/// A tree of five triangles, the body's first being 10: three levels of inner nodes, a leaf beside an inner node.
+/// A tree of five triangles, the body's first being 10: three levels of inner nodes, a leaf next to
+/// an inner node.
 ///
 /// ```text
 /// level 0            1
@@ -82,7 +83,7 @@ impl Tree {
         check_volumes(&self.links, &self.nodes, 1, box_of, |_, _| None)
     }
 
-    /// What the checker says of a tree with a fault planted in it.
+    /// The checker's verdict on a tree with a planted fault.
     fn with(fault: impl Fn(&mut Tree)) -> Violation {
         let mut tree = Tree::sound();
         fault(&mut tree);
@@ -186,7 +187,8 @@ fn t7_a_leaf_that_is_anothers() {
     assert_eq!(Tree::with(swapped), Violation::Fit { node: 8 });
 }
 
-/// Nodes of two leaves, fitted: each is asked for with its first leaf and its last, and each fault is named.
+/// Nodes of two leaves, fitted: each is found by its first leaf and its last, and each fault is
+/// named.
 #[test]
 fn t7_a_fit_that_is_none() {
     let tree = Tree::sound();

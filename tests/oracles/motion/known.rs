@@ -12,7 +12,7 @@ fn fraction(n: i64, d: i64) -> BigRational {
     BigRational::new(BigInt::from(n), BigInt::from(d))
 }
 
-/// The time is exactly that fraction, by every way of asking.
+/// The time is exactly that fraction, by every method.
 fn meets_at(what: &str, case: &Case, n: i64, d: i64) {
     let toi = first_contact(case).unwrap_or_else(|| panic!("{what}: they meet"));
     let (time, near) = (fraction(n, d), n as f64 / d as f64);
@@ -126,7 +126,8 @@ fn times_that_are_no_fractions() {
     // The end of the question is a number like any other.
     assert!(first_contact_until(&motion, before).is_none());
     assert_eq!(first_contact_until(&motion, after), Some(toi.clone()));
-    // A motion that meets at the same irrational time is not told apart from it, one that meets by an ulp later is.
+    // A motion that meets at the same irrational time is equal to it, one that meets by an ulp
+    // later is not.
     let turned = |p: [[f64; 3]; 4]| p.map(|[x, y, z]| [z * 4.0, -y, x]);
     let same = first_contact(&case(EdgeEdge, turned(t0), turned(t1))).unwrap();
     assert_eq!(same.cmp(&toi), Ordering::Equal);

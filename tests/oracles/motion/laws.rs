@@ -39,7 +39,7 @@ fn motions(seed: u64, count: usize) -> impl Iterator<Item = Case> {
     })
 }
 
-/// At the first time the linear program has a solution, wherever it can be asked; before it, never.
+/// At the first time the linear program has a solution, if it applies; before it, never.
 #[test]
 fn linear_programs_agree() {
     let (mut met, mut fractions, mut zero) = (0, 0, 0);

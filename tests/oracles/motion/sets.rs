@@ -41,7 +41,7 @@ fn public_queries() {
     }
 }
 
-/// What an answer has wrong, given the truth to within `slack`.
+/// The fault of an answer, given the truth to within `slack`.
 fn fault(toi: Option<&Toi>, truth: Option<f64>, slack: f64) -> Option<&'static str> {
     match (toi, truth) {
         (None, Some(_)) => Some("missed"),

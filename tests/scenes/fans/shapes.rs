@@ -67,7 +67,7 @@ impl Shape {
         self
     }
 
-    /// Where its points are after so many steps of so far.
+    /// Positions of its points after so many steps of so far.
     pub fn moved(&self, steps: u64, by: f32) -> Vec<[f32; 3]> {
         let point =
             |(i, p): (usize, &[f32; 3])| [0, 1, 2].map(|k| p[k] + by * noise(steps, i as u64, k as u64));

@@ -1,4 +1,4 @@
-//! What a body far away changes of an answer about others: nothing.
+//! A body far away changes nothing in an answer about others.
 
 use super::*;
 use nearmiss::query::QueryKind;
@@ -49,8 +49,8 @@ fn far() -> Mesh {
     Mesh::new("far", Positions::F64(points), vec![[0, 1, 2]]).expect("a mesh")
 }
 
-/// A triangle in doubles a million sizes beside, with sides as the others have: an earliest query
-/// tells what is too large for its tolerance, of any body.
+/// A triangle in doubles, a million sizes away, with sides as the others have: an earliest query
+/// reports pairs too large for its tolerance, of any body.
 fn beside((size, offset): (f32, f32)) -> Mesh {
     let [size, offset] = [size, offset].map(f64::from);
     let point = |x: f64, y: f64| [offset + 1e6 * size, offset + x / 3.0 * size, offset + y / 7.0 * size];

@@ -41,7 +41,7 @@ fn pairs_near_touching_are_as_exact_arithmetic_has_them() {
     for world in 0..200 {
         let corners: [[[f32; 3]; 3]; 2] =
             [(); 2].map(|()| [(); 3].map(|()| [(); 3].map(|()| rng.random_range(-1.0..1.0))));
-        // A corner of the one goes to a point of the other, and a little beside it.
+        // A corner of the one goes to a point of the other, and to a place near it.
         let poses = [pose(&mut rng, place, 1.0), pose(&mut rng, place, 1.0)];
         let [u, v] = [rng.random_range(0.0..0.5), rng.random_range(0.0..0.5)];
         let wide = corners.map(|triangle| triangle.map(|corner| corner.map(f64::from)));

@@ -9,7 +9,7 @@ use nearmiss::research::KindExt;
 use nearmiss::scene::{DeviceMotion, DevicePose, DeviceRows, Number};
 use nearmiss_lab::OneQueryOnSeveral;
 
-/// Where a body is: at both ends of the last step that named it, or at its end twice.
+/// Place of a body: at both ends of the last step that named it, or at its end twice.
 #[derive(Clone)]
 enum Place {
     Points([Positions; 2]),
@@ -41,7 +41,7 @@ impl Place {
         }
     }
 
-    /// As a frame is told: with both ends, or one where they are the same.
+    /// As an input of a frame: with both ends, or one if they are the same.
     fn input(&self) -> Option<Motion<'_>> {
         match self {
             Place::Points([start, end]) if start == end => Some(Motion::positions(start)),
@@ -132,7 +132,7 @@ fn start(body: &Body) -> Place {
     }
 }
 
-/// A detector, and where everything is that it was ever told.
+/// A detector, and the place of every body by its inputs so far.
 struct Told {
     device: Device,
     detector: OneQuery,
@@ -153,7 +153,7 @@ impl Told {
         Told { device, detector, query, bodies, is_planted, told: Vec::new() }
     }
 
-    /// What a fresh detector answers that is told all positions.
+    /// The answer of a fresh detector with all positions.
     fn fresh(&self) -> String {
         let mut scene = Scene::new();
         let mut all: Vec<_> = self.bodies.iter().collect();

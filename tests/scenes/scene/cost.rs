@@ -1,4 +1,5 @@
-//! What a scene costs: what moves, in launches that no number of bodies changes, and memory for what is there alone.
+//! The cost of a scene: launches of moving bodies, which no number of bodies changes, and memory
+//! only for existing bodies.
 
 use super::*;
 use nearmiss::query::Near;
@@ -69,7 +70,8 @@ fn launches_do_not_grow_with_bodies() {
             assert!(motion == QueryKind::Earliest || many.2 > 50 * few.2, "{few:?} {many:?}");
         }
         let [few, many] = [5, 300].map(|n| cost(pile(n, Body::rigid, true), motion));
-        // Of environments that never meet nothing is found, though all crates stand in one another's way.
+        // Environments never meet, so nothing is found, though all crates stand in one another's
+        // way.
         assert_eq!((few.0, few.2), (many.0, many.2), "{motion:?}");
         assert_eq!(many.2, 0);
     }
@@ -118,7 +120,7 @@ fn static_bodies_cost_no_work_in_a_frame() {
         scene
     };
     let (few, many) = (steps(with(4)), steps(with(400)));
-    // A tree a hundred times as large is a few levels deeper, and is not built anew.
+    // A tree a hundred times as large is a few levels deeper, and is not rebuilt.
     assert!(many.0 < 3 * few.0, "{few:?} {many:?}");
     assert_eq!((few.1, few.2), (many.1, many.2));
 }

@@ -1,4 +1,4 @@
-//! Bodies move, come, go and change between frames: each answer is that of a scene made anew.
+//! Bodies move, come, go and change between frames: each answer is that of a new scene.
 
 use super::pairwise::mixed;
 use super::*;
@@ -21,7 +21,7 @@ fn frames_move_what_they_name_and_others_rest() {
         let mut met = 0;
         for frame in 0..6u64 {
             let scene = detector.scene().clone();
-            // Where a step ends, and where those that are moved go from there.
+            // The end of a step, and the next place of the moved bodies from there.
             let mut moved: Vec<(BodyId, [Positions; 2], [Pose; 2])> = Vec::new();
             for id in scene.ids() {
                 let body = &scene.bodies()[id.index()];

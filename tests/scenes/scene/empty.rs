@@ -18,7 +18,7 @@ fn is_nothing(found: &Contacts, what: &str) {
     assert!(found.earliest_toi().is_none() && found.distance().is_none(), "{what}");
 }
 
-/// Every way to ask.
+/// Every way to query.
 fn ask_all(detector: &mut OneQuery, what: &str) {
     is_nothing(&detector.detect().expect(what), what);
     is_nothing(&detector.frame(&[]).expect(what), what);
@@ -66,7 +66,7 @@ fn a_scene_without_bodies_answers_nothing_until_they_come() {
     }
 }
 
-/// Two alike beside nothing, so that the tolerance is that of the two as well.
+/// Two alike with nothing else, so that the tolerance is that of the two as well.
 #[test]
 fn the_tolerance_is_that_of_the_bodies_that_come() {
     let mesh = soup(40, 3).0;

@@ -14,7 +14,7 @@ fn world(bodies: &[Body], environment: u32) -> impl Iterator<Item = Body> {
     })
 }
 
-/// Triangle pairs; contacts, with their bodies beside them.
+/// Triangle pairs; contacts, each with its bodies.
 type Found = (Vec<[u32; 2]>, Vec<(Contact, [usize; 2])>);
 
 /// The contacts of one world, in the numbers of its own bodies: from `first` on.

@@ -1,5 +1,5 @@
-//! What must not exist: launches and bytes of a frame, scene by scene and question by question. Nothing is there that a scene
-//! does not need.
+//! Things that must not exist: launches and bytes of a frame, scene by scene and query by query.
+//! Nothing is there that a scene does not need.
 
 use super::cost::{pile, query};
 use super::*;
@@ -75,7 +75,7 @@ fn scenes() -> [(&'static str, Scene, [u64; 3]); 6] {
     ]
 }
 
-/// Whether a query of that kind asks anything of so many bodies: a distance is that of two.
+/// Whether a query of that kind tests anything with so many bodies: a distance needs two.
 fn asks(motion: QueryKind, bodies: usize) -> bool {
     bodies > 1 || motion != QueryKind::Distance
 }
@@ -117,7 +117,7 @@ fn launches_of_a_frame() {
     }
 }
 
-/// What is held, by what explains it; and what is not there.
+/// Held memory, by its explanation; and the rest, which does not exist.
 #[test]
 fn bytes_of_a_scene() {
     for (name, scene, [_, _, moving]) in scenes().into_iter().skip(1) {
@@ -143,7 +143,7 @@ fn bytes_of_a_scene() {
             let many = u64::from(bodies > 1);
             told("filter of each node", many * 16 * 2 * triangles);
             told("environment, groups and ranges of each body", many * 24 * bodies);
-            // What rigid bodies need.
+            // Needs of rigid bodies.
             told("vertices of rigid bodies without a pose", point * 8 * rigid);
             told("poses of rigid bodies", 64 * ends * rigid);
             // A body over a fixed one is one that is placed among others.
@@ -190,7 +190,7 @@ fn bytes_of_a_scene() {
     }
 }
 
-/// What a scene does not have is told, and is not there.
+/// Stages that a scene does not have are reported, and are not there.
 #[test]
 fn what_is_left_out_is_told() {
     let [_, rigid, one, two, pair, worlds] = scenes().map(|(_, scene, _)| scene);

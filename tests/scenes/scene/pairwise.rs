@@ -3,7 +3,7 @@
 use super::*;
 use support::{ORDERS, sanitizer, ways};
 
-/// Whether a pair is asked, as the documentation says it.
+/// Whether a pair is tested, by the documentation.
 fn asked(scene: &Scene, i: usize, j: usize) -> bool {
     let [a, b] = [i, j].map(|i| &scene.bodies()[i]);
     let [p, q] = [a, b].map(|body| body.filter());
@@ -20,7 +20,7 @@ fn asked(scene: &Scene, i: usize, j: usize) -> bool {
 /// Triangle pairs, contacts and near pairs, of which a query has one kind.
 pub type Truth = (Vec<TrianglePair>, Vec<Contact>, Vec<NearPair>);
 
-/// What the bodies of a scene have in common, asked two by two.
+/// The contacts of the bodies of a scene, tested two by two.
 pub fn two_by_two(scene: &Scene, query: Query) -> Truth {
     let (mut pairs, mut contacts, mut near) = (Vec::new(), Vec::new(), Vec::new());
     let ids: Vec<BodyId> = scene.ids().collect();
@@ -41,7 +41,7 @@ pub fn two_by_two(scene: &Scene, query: Query) -> Truth {
     (pairs, contacts, near)
 }
 
-/// What a scene's answer has too much or too little.
+/// Surplus or missing rows of a scene's answer.
 pub fn differ(found: &Contacts, (pairs, contacts, near): &Truth) -> Option<String> {
     fn first<T: PartialEq + std::fmt::Debug>(found: &[T], truth: &[T]) -> Option<String> {
         let both = |i: usize| (found.get(i), truth.get(i));
@@ -73,7 +73,7 @@ pub fn mixed(seed: u64) -> Scene {
             environment: [Some(0), Some(0), Some(1), None][rng.random_range(0..4)],
             group: if seed.is_multiple_of(2) { u32::MAX } else { rng.random_range(0..4) },
             mask: if seed.is_multiple_of(2) { u32::MAX } else { rng.random_range(0..4) },
-            // Of a fixed body it is refused.
+            // It is refused for a fixed body.
             self_collision: Some(rng.random_bool(0.5)).filter(|own| !own || body.kind() != BodyKind::Fixed),
         };
         let id = scene.add(body.with_filter(filter));
@@ -88,7 +88,7 @@ fn query(motion: QueryKind) -> Query {
     support::asked::at(motion, 1e-4, 0.03)
 }
 
-/// What has a list for an answer.
+/// Queries with a list as their answer.
 const LISTS: [QueryKind; 3] = [QueryKind::Discrete, QueryKind::Continuous, QueryKind::Near];
 
 #[test]

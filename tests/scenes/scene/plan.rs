@@ -1,4 +1,4 @@
-//! `OneQuery::plan`: what it tells is what the device counted, exactly.
+//! `OneQuery::plan`: its figures are the counts of the device, exactly.
 
 use super::cost::pile;
 use super::*;
@@ -29,7 +29,7 @@ fn queries() -> Vec<Query> {
     all
 }
 
-/// What a plan tells otherwise than a device counted: launches of the frame, and bytes held.
+/// Differences of a plan from the counts of a device: launches of the frame, and bytes held.
 fn differences(plan: &Plan, launches: u64, device: &Device) -> Vec<String> {
     let mut all = Vec::new();
     let mut compare = |what: &str, planned: u64, counted: u64| {
@@ -43,7 +43,7 @@ fn differences(plan: &Plan, launches: u64, device: &Device) -> Vec<String> {
     all
 }
 
-/// Asks three frames; the plan, the launches of the last, and what it found.
+/// Runs three frames; returns the plan, the launches of the last, and what it found.
 fn planned(device: &Device, scene: Scene, query: Query) -> (Plan, u64, u64) {
     let mut detector = OneQuery::new(device.clone(), scene, query).expect("a detector");
     let bodies = detector.scene().bodies().to_vec();
@@ -82,7 +82,7 @@ fn a_plan_is_what_the_device_counts() {
         for scene in [three(), Scene::from(Body::deformable(soup(80, 4).0)), pile(9, Body::rigid, true)] {
             let device = engine();
             let mut detector = OneQuery::new(device.clone(), scene.clone(), query).expect("a detector");
-            // Of no frame: it asks them.
+            // Without a frame: it runs them.
             let plan = detector.plan().expect("a plan");
             let before = device.launches();
             detector.detect().expect("an answer");

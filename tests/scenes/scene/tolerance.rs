@@ -6,7 +6,7 @@ use nearmiss::query::Continuous;
 use nearmiss::research::{BoundingVolume, Certified, DetectorExt, QueryExt, WithSolver};
 use support::{between, ways};
 
-/// Bodies of very different sizes about one place, of every kind; in doubles where asked.
+/// Bodies of very different sizes about one place, of every kind; in doubles on request.
 fn sized(seed: u64, f64s: bool) -> Scene {
     let mut rng = SmallRng::seed_from_u64(seed);
     let mut scene = Scene::new();

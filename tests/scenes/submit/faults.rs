@@ -35,7 +35,7 @@ fn a_vertex_that_is_no_point_is_named() {
             assert!(text.contains(what), "{text}");
             let error = detector.frame(&[(id, Motion::OnDevice(input))]).expect_err("no answer");
             assert!(error.to_string().contains("vertex 17 has y"), "{error}");
-            // Mended, all is as before.
+            // After the correction, all is as before.
             memory[0].write(&t0);
             let found = detector.frame(&[(id, Motion::OnDevice(input))]).expect("an answer");
             assert_eq!(found.rows, good.rows, "{kind:?}");
@@ -43,7 +43,7 @@ fn a_vertex_that_is_no_point_is_named() {
     }
 }
 
-/// What a CPU is lent is looked at before anything moves.
+/// On a CPU, arrays of the caller are checked before anything moves.
 #[test]
 fn a_frame_that_is_refused_on_a_cpu_moves_nothing() {
     let (scene, id, [t0, t1]) = pair(60);
@@ -62,7 +62,8 @@ fn a_frame_that_is_refused_on_a_cpu_moves_nothing() {
     }
 }
 
-/// What is submitted is seen when it is read, and what was there before is overwritten: no answer is made of it.
+/// A submitted fault is seen when it is read, and the old positions are overwritten: they give no
+/// answer.
 #[test]
 fn after_a_submission_that_is_refused_nothing_is_answered_of_its_bodies() {
     let (mut scene, id, [t0, t1]) = pair(60);
@@ -74,7 +75,7 @@ fn after_a_submission_that_is_refused_nothing_is_answered_of_its_bodies() {
         memory[0].write(&bad);
         detector.submit().expect("submitted");
         detector.collect().expect_err("no answer");
-        // Mended, the next submission is as good as any.
+        // After the correction, the next submission is as good as any.
         memory[0].write(&t0);
         detector.submit().expect("submitted");
         assert_eq!(detector.collect().expect("an answer").rows, good.rows, "{kind:?}");
@@ -100,7 +101,7 @@ fn after_a_submission_that_is_refused_nothing_is_answered_of_its_bodies() {
     }
 }
 
-/// Where nothing can meet nothing is placed: what was lent is kept by the host.
+/// If nothing can meet, nothing is placed: the host keeps the caller's arrays.
 #[test]
 fn what_is_lent_where_nothing_can_meet_is_kept() {
     let (mesh, [t0, t1]) = soup(60, 3);
@@ -129,7 +130,7 @@ fn what_is_lent_where_nothing_can_meet_is_kept() {
     assert_eq!(found.rows, by_host.detect().expect("an answer").rows);
 }
 
-/// What no face uses may be anything.
+/// A vertex that no face uses may be anything.
 #[test]
 fn a_vertex_that_no_face_uses_is_not_looked_at() {
     let (mesh, [mut points, _]) = soup(50, 3);
@@ -166,7 +167,8 @@ fn coordinates_too_large_for_singles_become_doubles() {
     }
 }
 
-/// An earliest query lists no pairs: that its tolerance is below precision is told of what only the device has seen, too.
+/// An earliest query lists no pairs. That its tolerance is below precision is also reported for
+/// device-resident bodies.
 #[test]
 fn what_is_below_precision_is_told_of_what_is_away() {
     let (scene, id, ends) = pair(60);
@@ -244,7 +246,7 @@ fn inputs_that_do_not_fit_their_body_are_refused() {
     assert!(refused(DeviceMotion::Pose(pose)).contains("positions"));
 }
 
-/// A body that only another detector knows is none that this one can ask about.
+/// A body of another detector cannot be queried by this one.
 #[test]
 fn a_body_that_is_away_is_not_taken_along() {
     let (scene, id, [t0, _]) = pair(60);

@@ -1,4 +1,4 @@
-//! No refusal is lost: of each query, by each tolerance, each way of being refused, asked,
+//! No refusal is lost: of each query, by each tolerance, each way of being refused, queried,
 //! submitted, and submitted again.
 
 use super::*;
@@ -51,7 +51,7 @@ fn a_vertex_that_is_no_point_is_refused_every_time() {
             let mut again = |detector: &mut OneQuery, points: &[[f32; 3]], fetches: bool| {
                 memory[0].write(points);
                 detector.submit().expect("submitted");
-                // What lies on the device is refused there, too.
+                // Faults on the device are refused there, too.
                 let is_bad = !points[17][1].is_finite();
                 assert!(seen(&device, detector).is_none_or(|invalid| invalid == is_bad), "{query:?}");
                 if fetches {
@@ -71,7 +71,7 @@ fn a_vertex_that_is_no_point_is_refused_every_time() {
                     detector.download_positions().expect("positions");
                 }
             }
-            // Recorded and launched again is not told: whoever asks next finds it.
+            // A recording that is launched again reports nothing: the next query finds it.
             memory[0].write(&bad);
             detector.submit().expect("submitted");
             assert_eq!(lost(&format!("{query:?} detected"), detector.detect(), "vertex 17 has y"), None);

@@ -1,4 +1,4 @@
-//! The ends of the descent: with the flag for a front, a complete cut, whatever the queues.
+//! The ends of the descent: with the flag for a front, a complete cut, for any queues.
 
 use super::*;
 use nearmiss::research::pipeline::counts::FrameCounters;
@@ -46,7 +46,7 @@ fn tree(leaves: u32, length: f32) -> (Vec<Node<Aabb>>, Vec<u32>) {
     (nodes, parents)
 }
 
-/// What a traversal left: ends, candidates, units left over, work.
+/// The state after a traversal: ends, candidates, units left over, work.
 struct Left {
     ends: Vec<Pair>,
     pairs: Vec<Pair>,
@@ -106,7 +106,7 @@ fn run(device: &Device, nodes: &[Node<Aabb>], rounds: Option<u32>) -> Left {
         }
         None => {
             let (mut places, control) = (words(100), words(1));
-            // What another launch left there counts as nothing.
+            // Remains of another launch count as nothing.
             let stale = [0, 1, pool::CHUNK as u64, pool::GONE].map(|state| 6 << pool::LAUNCH | state);
             places.write(&stale.repeat(25)).expect("words");
             let chunks = device.buffer::<Pair>(100 * pool::CHUNK as usize).expect("memory");

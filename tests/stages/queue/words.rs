@@ -19,7 +19,7 @@ fn the_first_ticket_is_for_the_roots() {
     assert_eq!(Counts::of(dry), counts(4, 1, 1));
     let over = dry.wrapping_add(TICKET.wrapping_sub(WORK));
     assert_eq!((Counts::of(over), Counts::of(over).all_drawn()), (counts(5, 1, 0), true));
-    // Chunks that nobody asked for: the places have no tickets yet.
+    // Chunks that no block requested: the places have no tickets yet.
     let eager = TICKET + 2 * (OFFER + WORK);
     assert_eq!((Counts::of(eager), Counts::of(eager).waiting()), (counts(1, 2, 3), 0));
     assert!(!Counts::of(eager).all_drawn() && Counts::of(eager + 2 * TICKET).all_drawn());
