@@ -62,7 +62,7 @@ fn main() -> Result<(), Error> {
     let body = Body::deformable(MeshFile::read(Path::new(&file))?.into_mesh());
     let device = Device::open(Backend::Auto, None)?;
     let edge = mean_side(std::slice::from_ref(&body));
-    println!("{}: mean edge {edge}, asked within {edges} of it", device.name());
+    println!("{}: mean edge {edge}, tested within {edges} of it", device.name());
     ask(&device, &body, Query::discrete())?;
     ask(&device, &body, Query::near(edges * edge))
 }

@@ -119,7 +119,7 @@ pub fn watched<T: Send>(
         }
         (None, Some(done)) => Ok(done),
         // It is taken once.
-        (None, None) => Err(crate::errors::raised(Error::Bug { what: "work that nobody did".into() })),
+        (None, None) => Err(crate::errors::raised(Error::Bug { what: "work that was not done".into() })),
     }
 }
 

@@ -57,7 +57,7 @@ pub fn funnel(device: &Device, name: &str, body: &Body) -> Result<Vec<FunnelRow>
         ),
         both("features with swept boxes that meet", contacts.stats.candidates_vf_ee, ms("features")),
         both("left by the filters", contacts.stats.survivors_vf_ee, ms("cull")),
-        both("asked in f64 after f32", contacts.stats.escalated_vf_ee, None),
+        both("tested in f64 after f32", contacts.stats.escalated_vf_ee, None),
         both("not isolated in f64 either", contacts.stats.open_vf_ee, None),
         both("cut into slices", contacts.stats.sliced_vf_ee, None),
         row("listed", found, ms("solve")),

@@ -20,7 +20,7 @@ fn is_default(row: &Row) -> bool {
 pub fn headline(rows: &[Row]) -> String {
     let of: Vec<&Row> = rows.iter().filter(|row| is_default(row)).collect();
     let sum = |count: fn(&Row) -> u64| of.iter().map(|row| count(row)).sum::<u64>();
-    let counts = format!("of {} pairs asked, {} of them contacts", sum(|r| r.cases), sum(|r| r.contacts));
+    let counts = format!("of {} pairs tested, {} of them contacts", sum(|r| r.cases), sum(|r| r.contacts));
     let moving = of.iter().filter(|row| row.ms.is_some() && row.tolerance_edges.is_some());
     let frame = match moving.max_by_key(|row| row.cases) {
         Some(row) => format!(
@@ -60,7 +60,7 @@ mod tests {
         let other = Row { missed: 70, ..row(Solver::CubicF32, None) };
         let line = headline(&[default, frame, planted, cast, other]);
         let want = "3 missed, 2 late, 2.00 ppm undecided, 12.5 ms at tolerance = 1e-4 edge lengths (certified, a scene; of \
-                    6000000 pairs asked, 150 of them contacts)";
+                    6000000 pairs tested, 150 of them contacts)";
         assert_eq!(line, want);
         assert!(headline(&[]).starts_with("0 missed, 0 late (certified; of 0 pairs"));
     }

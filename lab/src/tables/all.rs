@@ -154,7 +154,7 @@ impl Figures {
         }
         if !self.front.is_empty() {
             let title = "A front: its cost, of that of the same frame without it";
-            let bound = (50.0, "a half: the thesis's bound");
+            let bound = (50.0, "half: the bound of Lauterbach 2010");
             both("front", csv(&self.front), curves(title, &self.machine(), bound, &charts(&self.front)))?;
         }
         if !self.bodies.is_empty() {

@@ -116,7 +116,7 @@ impl Printed for Figure613 {
 
 impl Printed for Figure614 {
     const CAPTION: &'static str =
-        "Figure 6.14: shares of a frame's time, percent; the thesis has only a picture";
+        "Figure 6.14: shares of a frame's time, percent; Lauterbach 2010 has only a picture";
     const HEADS: &'static [&'static str] =
         &["scene", "motion", "volume", "front", "refit", "traverse", "balance", "triangle tests", "of ms"];
     fn row(&self) -> Vec<String> {
@@ -137,7 +137,7 @@ impl Printed for Figure614 {
 
 impl Printed for FrontRow {
     const CAPTION: &'static str =
-        "A front, by the moved part of a step; the thesis's bound is half of the node tests";
+        "A front, by the moved part of a step; the bound of Lauterbach 2010 is half of the node tests";
     const HEADS: &'static [&'static str] = &[
         "scene",
         "motion",

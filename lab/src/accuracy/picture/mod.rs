@@ -27,7 +27,7 @@ pub fn tolerance(device: &str, rows: &[Row]) -> Result<String, Error> {
     let quantities: [Quantity; 5] = [
         ("99 % of times early by at most, in mean edges", |row| row.early_edges_p99),
         ("false alarms", |row| row.false_alarms as f64),
-        ("asked in f64 after f32", |row| row.escalated as f64),
+        ("tested in f64 after f32", |row| row.escalated as f64),
         ("boxes of 99 % of the listed pairs", |row| row.boxes_p99),
         ("nanoseconds a pair", |row| row.ns.unwrap_or(0.0)),
     ];

@@ -23,7 +23,7 @@ const FALLS: [Row<[f64; 3]>; 21] = [
     ("X35", "fast, aside", [2.0, 9.0, 3e6], [2.0, 9.0, -1e6], Apart),
     ("X36", "at a corner", [0.0, 0.0, 3.0], [0.0, 0.0, -1.0], Meets(0.75)),
     ("X36", "at a side", [4.0, 4.0, 3.0], [4.0, 4.0, -1.0], Meets(0.75)),
-    ("X36", "beside a side", [4.001, 4.001, 3.0], [4.001, 4.001, -1.0], Apart),
+    ("X36", "past a side", [4.001, 4.001, 3.0], [4.001, 4.001, -1.0], Apart),
     ("X12", "a needle of a path, in the plane, along a side", [8.0, 0.0, 0.0], [16.0, 0.0, 0.0], Meets(0.0)),
     ("X16", "in the plane, towards a side, short of it", [12.0, 4.0, 0.0], [4.5, 4.0, 0.0], Apart),
 ];

@@ -52,7 +52,8 @@ pub fn bars(title: &str, device: &str, panels: &[Panel]) -> Result<String, Error
     let height = |p: &Panel| PANEL + PAIR * p.bars.len() as i32;
     let whole = head_height(2) + panels.iter().map(height).sum::<i32>();
     sheet(whole, |sheet| {
-        let notes = [(format!("nearmiss on {device}"), OURS), (format!("the thesis on a {PAPER_GPU}"), DARK)];
+        let notes =
+            [(format!("nearmiss on {device}"), OURS), (format!("Lauterbach 2010 on a {PAPER_GPU}"), DARK)];
         let mut y = sheet.head(title, &notes)?;
         for panel in panels {
             self::panel(sheet, panel, y, (from, to))?;
