@@ -278,7 +278,7 @@ enum NearmissMotionKind
     NEARMISS_MOTION_STEP = 1,
     // A rigid body rests in `poses[0]`.
     NEARMISS_MOTION_POSE = 2,
-    // A rigid body moves from `poses[0]` to `poses[1]`, each vertex in a straight line: between
+    // A rigid body moves from `poses[0]` to `poses[1]`, each vertex in a straight line. Between
     // the poses it is not rigid, so give steps in which it turns little.
     NEARMISS_MOTION_POSE_STEP = 3,
 };
@@ -420,7 +420,7 @@ typedef struct {
     uint32_t bodies[2];
     // Their indices in these bodies.
     uint32_t triangles[2];
-    // Distance. 0 if and only if they share a point; else it errs by at most 192 half ulps of the
+    // Distance. 0 if and only if they share a point. Else it errs by at most 192 half ulps of the
     // larger extent: of these triangles, or of the truly nearest ones.
     double distance;
     // Weights of the corners of each triangle in its nearest point.
@@ -572,8 +572,8 @@ typedef struct {
 typedef struct {
     // Type of the entries.
     NearmissEntries entries;
-    // Number of lists, 0 to 2. Feature pairs: one list of vertex/face rows, then edge/edge rows,
-    // if they are ordered; else a list of vertex/face rows and a list of edge/edge rows.
+    // Number of lists, 0 to 2. Ordered feature pairs have one list: vertex/face rows, then
+    // edge/edge rows. Others have a list of vertex/face rows and a list of edge/edge rows.
     uint32_t list_count;
     // The lists.
     NearmissDeviceList lists[2];
@@ -588,8 +588,8 @@ typedef struct {
     uint64_t earliest;
     // The two vertices of every edge, 8 bytes each; none of a discrete query.
     NearmissDeviceList edges;
-    // In memory of the host, until the next preparation: the first vertex, triangle and edge of
-    // each body, and at the end the numbers of all.
+    // The first vertex, triangle and edge of each body, and at the end the numbers of all. In
+    // memory of the host, until the next preparation.
     const uint32_t (*starts)[3];
     // Length of `starts`: the number of bodies, and one more.
     size_t start_count;

@@ -20,7 +20,7 @@ pub enum NearmissMotionKind {
     NEARMISS_MOTION_STEP = 1,
     /// A rigid body rests in `poses[0]`.
     NEARMISS_MOTION_POSE = 2,
-    /// A rigid body moves from `poses[0]` to `poses[1]`, each vertex in a straight line: between
+    /// A rigid body moves from `poses[0]` to `poses[1]`, each vertex in a straight line. Between
     /// the poses it is not rigid, so give steps in which it turns little.
     NEARMISS_MOTION_POSE_STEP = 3,
 }

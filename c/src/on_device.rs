@@ -41,8 +41,8 @@ pub struct NearmissDeviceList {
 pub struct NearmissDeviceAnswer {
     /// Type of the entries.
     pub entries: NearmissEntries,
-    /// Number of lists, 0 to 2. Feature pairs: one list of vertex/face rows, then edge/edge rows,
-    /// if they are ordered; else a list of vertex/face rows and a list of edge/edge rows.
+    /// Number of lists, 0 to 2. Ordered feature pairs have one list: vertex/face rows, then
+    /// edge/edge rows. Others have a list of vertex/face rows and a list of edge/edge rows.
     pub list_count: u32,
     /// The lists.
     pub lists: [NearmissDeviceList; 2],
@@ -57,8 +57,8 @@ pub struct NearmissDeviceAnswer {
     pub earliest: u64,
     /// The two vertices of every edge, 8 bytes each; none of a discrete query.
     pub edges: NearmissDeviceList,
-    /// In memory of the host, until the next preparation: the first vertex, triangle and edge of
-    /// each body, and at the end the numbers of all.
+    /// The first vertex, triangle and edge of each body, and at the end the numbers of all. In
+    /// memory of the host, until the next preparation.
     pub starts: *const [u32; 3],
     /// Length of `starts`: the number of bodies, and one more.
     pub start_count: usize,

@@ -106,7 +106,7 @@ pub struct NearmissNearest {
     pub bodies: [u32; 2],
     /// Their indices in these bodies.
     pub triangles: [u32; 2],
-    /// Distance. 0 if and only if they share a point; else it errs by at most 192 half ulps of the
+    /// Distance. 0 if and only if they share a point. Else it errs by at most 192 half ulps of the
     /// larger extent: of these triangles, or of the truly nearest ones.
     pub distance: f64,
     /// Weights of the corners of each triangle in its nearest point.

@@ -25,8 +25,8 @@ use output::say;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// 0 done (contacts or not), 2 bad arguments, 3 bad input, 4 device, memory or output, and a check
-/// that fails; 130 and 143 for SIGINT and SIGTERM.
+/// Exit codes: 0 done (contacts or not), 2 bad arguments, 3 bad input, 4 device, memory or output, or
+/// a check that fails. SIGINT and SIGTERM give 130 and 143.
 fn main() -> ExitCode {
     stop::listen();
     let done = match args::parse() {

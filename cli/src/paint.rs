@@ -50,8 +50,8 @@ fn placed(body: &Body, time: f64) -> Vec<[f64; 3]> {
     from.into_iter().zip(to).map(between).collect()
 }
 
-/// All bodies as one mesh, where they are at that time of the step, from 0 to 1, and the colour of each triangle: those of the answer, and
-/// those that have a vertex or an edge of it.
+/// All bodies as one mesh at that time of the step, from 0 to 1, with the colour of each triangle.
+/// Coloured are triangles of the answer, and triangles with a vertex or an edge of it.
 ///
 /// # Errors
 /// [`Error::Input`] for more vertices or triangles than a mesh may have.

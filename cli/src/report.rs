@@ -40,8 +40,8 @@ impl FileFaces {
         self.0[body.index()][triangle as usize]
     }
 
-    /// The same answer in faces, ascending and each once: pairs of triangles of the same two faces become one, of contacts of a vertex with triangles
-    /// of one face the earliest stays.
+    /// The same answer in faces, ascending and each once. Pairs of triangles of the same two faces become
+    /// one. If a vertex has contacts with several triangles of a face, the earliest stays.
     pub fn name(&self, answer: &Rows) -> Rows {
         match answer {
             Rows::Pairs(pairs) => {

@@ -105,8 +105,9 @@ fn choices(query: Query) -> Vec<(&'static str, Query)> {
     ]
 }
 
-/// The results of the engine, for each way that may leave others. Overlap tests with a slack do not nest: whether a pair is
-/// a candidate may depend, by a hair, on which pairs of nodes were tested before it. Each is compared with its own; contacts with all.
+/// The engine's results, for each kind of search whose candidates may differ. Overlap tests with a slack
+/// do not nest. So a pair may be a candidate or not, by a hair, depending on the node pairs before it.
+/// Each search is compared with its own kind; contacts are compared with all.
 struct Truths {
     by_leaf: Print,
     by_pair: Print,

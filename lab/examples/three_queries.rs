@@ -4,8 +4,8 @@
 //! cargo run --release -p nearmiss-lab --example three_queries -- cpu t0.ply t1.ply
 //! ```
 //!
-//! Prints CSV: who answers, milliseconds of the caller for a step (median of 30), bytes of the device that are held, bytes that a step
-//! uploads, and the hashes of the answers.
+//! Prints CSV: the detector, milliseconds of the caller for a step (median of 30), device bytes held,
+//! bytes uploaded in a step, and the hashes of the answers.
 
 use nearmiss::device::{Backend, Buffer};
 use nearmiss::mesh::Positions;

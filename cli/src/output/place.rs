@@ -131,8 +131,8 @@ pub fn beside(real: &Path, put: impl FnOnce(&mut dyn Write) -> Result<(), String
     replace(new, real, |new| new.persist(real))
 }
 
-/// Gives a whole file its name. A name that cannot be given away (a file is mounted there, or is another's in a sticky folder) keeps
-/// its file, which takes the bytes.
+/// Gives a whole file its name. Some names cannot change hands: a file is mounted there, or belongs to
+/// another user in a sticky folder. Then the file stays and takes the bytes.
 fn replace(
     new: NamedTempFile,
     real: &Path,

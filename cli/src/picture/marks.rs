@@ -7,8 +7,8 @@ use nearmiss::mesh::Body;
 /// More than this are not drawn: they would hide what they mark.
 const MOST: usize = 400;
 
-/// The nearest points of each contact, on the bodies as they are drawn: of a pair within a distance, and of a distance, how it is measured.
-/// None of triangle pairs, which have no points, and none of more than 400 contacts.
+/// The nearest points of each contact, on the bodies as they are drawn. Near pairs and distances also
+/// have the line between them. Triangle pairs have no points, and more than 400 contacts have no marks.
 pub fn of(
     bodies: &[Body],
     points: &[[f64; 3]],

@@ -25,8 +25,11 @@ use std::process::ExitCode;
 /// Runs the query, draws the frame, and prints the colours.
 ///
 /// # Errors
-/// [`Error::InvalidArgument`] for a name that is not of a PNG, for several steps, and for a time of a frame at rest; [`Error::Output`] for a file that
-/// cannot be written; [`Error::OutOfMemory`] before the picture is drawn; those of the question and the machine.
+/// - [`Error::InvalidArgument`] for a name that is not of a PNG, for several steps, and for a time of a
+///   frame at rest;
+/// - [`Error::Output`] for a file that cannot be written;
+/// - [`Error::OutOfMemory`] before the picture is drawn;
+/// - those of the query and the machine.
 pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
     let Some(out) = &args.detect.out.out else {
         return Err(Error::Bug { what: "a picture without --out".into() });

@@ -1,7 +1,8 @@
 //! Triangles, lines and discs into samples, nine a pixel, each with the depth of what is nearest.
 //!
-//! Corners are rounded to sixteenths of a sample and sides are decided in integers: of two triangles with a common side, no sample between them
-//! is missed. Nothing but `+ - * /` and roots is done with floats, so a picture is the same, byte by byte, on every machine.
+//! Corners are rounded to sixteenths of a sample, and sides are decided in integers. So two triangles
+//! with a common side miss no sample between them. Floats are used only for `+ - * /` and roots, so a
+//! picture is the same, byte by byte, on every machine.
 
 /// Samples of a pixel in each direction.
 pub const FINE: usize = 3;

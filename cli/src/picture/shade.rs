@@ -97,7 +97,8 @@ pub fn normals(points: &[[f64; 3]], faces: &[[u32; 3]]) -> Vec<[[f64; 3]; 3]> {
     flat.iter().zip(faces).map(|(own, face)| face.map(|vertex| corner(*own, vertex))).collect()
 }
 
-/// A colour where the surface has that normal, of which either side may be seen: light from the upper left before it, and from all around.
+/// Colour of a surface with that normal, seen from either side. Light comes from the upper left in
+/// front, and from all around.
 pub fn lit(colour: [u8; 3], normal: [f64; 3], camera: &Camera) -> Colour {
     let [x, y, z] = camera.turned(normal);
     let [x, y, z] = if z < 0.0 { [-x, -y, -z] } else { [x, y, z] };

@@ -1,7 +1,8 @@
 //! Rows that kernels append to their lists, counted on a machine and on the CPU.
 //!
-//! Lanes that are not together lose what they append, or append it to another's place, while each lane's own verdict is
-//! right; no comparison of verdicts in small scenes notices. The grids on which that was seen run here, several times.
+//! Lanes that are not together lose their appended rows, or write them to another's place. Each lane's
+//! own verdict is right, so comparing verdicts in small scenes finds nothing. The grids on which this
+//! was seen run here, several times.
 
 use nearmiss::device::Device;
 use nearmiss::error::Error;

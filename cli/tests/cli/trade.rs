@@ -114,7 +114,8 @@ fn query_files_are_read_decided_and_judged() {
     }
 }
 
-/// A scene from files against a list: one contact too many in the list is a miss of every solver, one too few a false alarm.
+/// A scene from files against a list. A surplus contact in the list is a miss of every solver, a
+/// missing one a false alarm.
 #[test]
 fn a_list_of_contacts_judges_a_mesh() {
     let folder = Folder::new("trade-mesh");

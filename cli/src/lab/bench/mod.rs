@@ -41,9 +41,11 @@ pub struct Figures {
 /// Measures, prints, and writes to `--out`.
 ///
 /// # Errors
-/// [`Error::InvalidArgument`] for what cannot be compared, [`Error::Input`] for an earlier file that cannot be used, both before anything is
-/// measured; [`Error::Regression`] for the first answer that is another than in that file, or frame that takes too long; those of
-/// the device.
+/// - [`Error::InvalidArgument`] if nothing can be compared, before anything is measured;
+/// - [`Error::Input`] for an earlier file that cannot be used, also before;
+/// - [`Error::Regression`] for the first answer that differs from that file, or the first frame that
+///   takes too long;
+/// - those of the device.
 pub fn bench(args: &BenchArgs) -> Result<ExitCode, Error> {
     if args.list {
         let line = |of: &cases::Generated| format!("{:<12}{}\n", of.name, of.about);
