@@ -5,7 +5,7 @@
 # Rationale
 # - QEMU and all that it runs come from the distribution's packages by name, unpacked and not installed: no rights are needed, and this
 #   machine stays as it was.
-# - What runs so is slow, some twenty times; it shows that a build works and gives the same bits, not how fast.
+# - Such a run is some twenty times slower. It shows that a build works and gives the same bits, not how fast.
 set -euo pipefail
 
 [ $# = 1 ] || { echo "usage: .ci/aarch64.sh FOLDER" >&2; exit 2; }

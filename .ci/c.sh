@@ -97,7 +97,7 @@ for kind in nearmiss static; do
     "$there/build/by_$kind" | grep -x "3 pairs"
 done
 readelf -d "$there/build/by_nearmiss" | grep -F "Shared library: [$soname]"
-# Where threads are not found, a project that can do without nearmiss goes on.
+# If threads are not found, a project that does not need nearmiss continues.
 cat >"$there/without/CMakeLists.txt" <<'END'
 cmake_minimum_required(VERSION 3.16)
 project(without C)

@@ -5,7 +5,7 @@
 #
 # First each judge is shown to be awake: with NEARMISS_PLANT_A_FAULT set a target changes answers before they are judged,
 # and must fail. An input that fails is written to fuzz/artifacts/TARGET and printed; keep it in tests/finds/TARGET, where
-# tests/frames/fuzz_pairs.rs asks it again. tests/finds are also what the fuzzer begins with; what it learns stays in fuzz/corpus.
+# tests/frames/fuzz_pairs.rs runs it again. tests/finds are also what the fuzzer begins with; what it learns stays in fuzz/corpus.
 #
 # Needs no nightly compiler and no cargo-fuzz: coverage is an LLVM pass that stable rustc passes on, and libfuzzer-sys
 # brings libFuzzer as C++. `cargo +nightly fuzz run TARGET` does the same, and watches memory too.

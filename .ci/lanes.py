@@ -34,7 +34,7 @@ import sys
 from sass import ENDS, Unreadable, read
 
 APART, COUNTED, TOGETHER = 0, 1, 2
-# What computes the same from the same, in every lane.
+# Operations that compute the same from the same, in every lane.
 PURE = set("""IMAD IADD3 IADD ISETP MOV SEL LOP3 SHF LEA PLOP3 PRMT SGXT POPC FLO VIADD VIMNMX VIMNMX3 VIADDMNMX IMNMX IABS BMSK
     I2F I2FP F2I F2F FADD FMUL FFMA FSETP FSEL FMNMX FSET MUFU HFMA2 DADD DMUL DFMA DSETP P2R R2P
     LDC LDS LDG R2UR S2R CS2R VOTE B2R""".split())
@@ -138,7 +138,7 @@ def needs(step, masks):
     if step.op == "BAR" or step.op == "VOTE" and not step.counts:
         return TOGETHER
     if step.op == "SHFL":
-        # The kernels shuffle by SHFL.UP and do not ask whether there is a lane: tests/gpu/ptx.rs looks into the text.
+        # The kernels shuffle by SHFL.UP and do not test whether there is a lane: tests/gpu/ptx.rs looks into the text.
         return TOGETHER if step.name != "SHFL.IDX" and step.parts[0] == "PT" else COUNTED
     return APART
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Assembles a PTX text as the driver would, without a GPU: what ptxas refuses, no GPU runs. And reads the machine code.
 #
-#   .ci/ptxas.sh [--newest] FILE.ptx[.zst] [ARCH...]      ARCH: sm_80 sm_90 sm_100 unless told
+#   .ci/ptxas.sh [--newest] FILE.ptx[.zst] [ARCH...]      ARCH: sm_80 sm_90 sm_100 by default
 #
 # Prints registers, stack, spills and shared memory of each kernel for the first ARCH, and makes sure
 # - that no product and sum became one operation: the code is the same where that is forbidden;
@@ -20,7 +20,7 @@ shift
 archs=("$@")
 [ ${#archs[@]} -gt 0 ] || archs=(sm_80 sm_90 sm_100)
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-# The last of CUDA 12 and the newest: `python3 -m pip index versions nvidia-cuda-nvcc` tells of newer ones.
+# The last of CUDA 12 and the newest: `python3 -m pip index versions nvidia-cuda-nvcc` lists newer ones.
 packages=(nvidia-cuda-nvcc-cu12==12.9.86 nvidia-cuda-nvcc==13.5.37)
 ! $newest || packages=("${packages[-1]}")
 reader=nvidia-cuda-nvdisasm==13.5.37
@@ -153,7 +153,7 @@ for ptxas in "${assemblers[@]}"; do
     cmp -s "$work/two.rn.true.sass" "$work/two.rn.false.sass" || die "a marked product and sum were contracted"
 done
 
-# One assembly with all that is asked of it; its words go to a file. And one with contraction forbidden.
+# One assembly with all its options; its messages go to a file. And one with contraction forbidden.
 examine() {
     disassembled "$1" "$2" "$text" "$3" --verbose && python3 "$here/lanes.py" "$3" "$work/$3.sass" >"$work/$3.said"
 }
@@ -165,7 +165,7 @@ for ptxas in "${assemblers[@]}"; do
     echo "ptxas $release"
     for arch in "${archs[@]}"; do jobs+=("examine $ptxas $arch ptxas-$release-$arch"); done
 done
-# Whether marks forbid a contraction does not hang on the assembler's age: the planted one above was asked of both.
+# Whether marks forbid a contraction does not depend on the assembler's age: both have judged the planted one above.
 jobs+=("forbidden $ptxas ${archs[0]} ptxas-$release-${archs[0]}-not")
 failed=0
 running=0

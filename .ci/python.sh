@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The Python module as a stranger gets it: a wheel, installed into an empty environment, asked what its README and the book say.
+# The Python module as a user gets it: a wheel, installed into an empty environment, which runs its README and the book.
 #
 # Rationale
 # - The profile is cargo's `dev`, which is optimised: what is tested is what is built anyway.

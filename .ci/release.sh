@@ -7,10 +7,10 @@
 #   OUT/*.json      the bill of materials of each package (CycloneDX), OUT/SHA256SUMS of everything
 #
 # Rationale
-# - A release is of a clean tree whose changelog has a heading with the version, and of packages without advisories. `--rehearse` asks for none of
+# - A release is of a clean tree whose changelog has a heading with the version, and of packages without advisories. `--rehearse` needs none of
 #   these.
 # - Zig's linker stands for old glibcs and for the other machine; it and maturin come from PyPI by name. The GPU's kernels are committed.
-# - What is packed has run: the wheels in empty environments with the READMEs' lines, the C examples, the program, whose answers are the same
+# - Packed files have run: the wheels in empty environments with the READMEs' lines, the C examples, the program, whose answers are the same
 #   bytes for both machines. aarch64 runs under QEMU (.ci/aarch64.sh).
 # - The public interface is compared with that of the newest tag `v*` by cargo-semver-checks; where there is no tag there is nothing to compare.
 set -euo pipefail

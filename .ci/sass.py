@@ -6,9 +6,9 @@ import re
 
 CODE = re.compile(r"^\s+/\*([0-9a-f]+)\*/\s+(?:@(!?U?P\w) )?([A-Z][A-Z0-9_.]*)\s*(.*?)\s*(\(\*.*\*\))?\s*;")
 NAMES = re.compile(r"UR\d+|UP\d|SR_[\w.]+|SRZ|\bB\d+|R\d+(?:\.64)?|P\d|c\[[^\]]*\]\[R\d+")
-# What writes none of the registers that it names first.
+# Operations that write none of the registers that they name first.
 SILENT = ("NOP", "BAR", "WARPSYNC", "BSSY", "BSYNC", "BREAK")
-# Where a block ends. A trap (BPT) ends the launch.
+# Ends of a block. A trap (BPT) ends the launch.
 ENDS = ("BRA", "BRX", "EXIT", "RET", "BPT")
 UNREADABLE = ("JMP", "JMX", "JMXU", "BRXU", "RTT", "KILL", "ELECT", "R2B")
 
@@ -37,10 +37,10 @@ class Step:
         # A funnel shift of two registers makes one.
         self.wide = 2 if "64" in name and self.op != "SHF" or "WIDE" in name or self.op[0] == "D" or name == "CS2R" else 1
         self.wide = 8 if ".256" in name else 4 if ".128" in name else self.wide
-        # A VOTE of a constant asks who is here.
+        # A VOTE of a constant counts the lanes that are here.
         self.counts = self.op in ("VOTE", "VOTEU") and self.parts[-1] in ("PT", "UPT")
         self.reads, self.writes = self.registers()
-        # What the assembler keeps in memory for want of registers comes back as it was.
+        # Registers that the assembler spills to memory come back as they were.
         self.spills = False
         place = re.search(r"\[R1(?:\+0x([0-9a-f]+))?\]", text) if rest and "SpillRefill" in rest else None
         if place and self.op in ("STL", "LDL"):

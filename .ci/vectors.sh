@@ -19,7 +19,7 @@ counted() {
         END { if (inside) print packed, single }'
 }
 
-# What is wrong with these counts, if anything.
+# The fault of these counts, if any.
 judged() {
     local functions=0 packed single
     while read -r packed single; do

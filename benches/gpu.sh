@@ -99,8 +99,8 @@ fi
 "$program" lab tables --backend cuda --frames 8 --out "$out/tables" >"$out/tables.txt"
 "$program" lab tables --backend cuda --frames 8 --profile gtx285 --out "$out/tables-gtx285" >"$out/tables-gtx285.txt"
 
-# 5. The fixed list of `nearmiss lab bench` and the public frames, beside the last figures of such a GPU in benches/results, where there
-#    are some: an answer that is another than there fails.
+# 5. The fixed list of `nearmiss lab bench` and the public frames, compared with the last figures of such a GPU in benches/results, if there
+#    are some. A different answer fails.
 bench=(--backend cuda --repeat 51 --out "$out")
 if [ -f "$frames/cloth_ball92.ply" ]; then
     bench+=(--mesh "$frames/cloth_ball92.ply" "$frames/cloth_ball93.ply")
@@ -122,7 +122,7 @@ else
 fi
 rm -f "$out/bench-earlier.csv" "$out/bench-said.txt"
 
-# 6. Where the time goes: one frame of each of the first two scenes, kernel by kernel.
+# 6. The time of kernels: one frame of each of the first two scenes, kernel by kernel.
 metrics=gpu__time_duration.sum,launch__registers_per_thread,sm__warps_active.avg.pct_of_peak_sustained_active
 metrics+=,smsp__thread_inst_executed_per_inst_executed.ratio,smsp__issue_active.avg.pct_of_peak_sustained_active
 metrics+=,lts__t_bytes.sum

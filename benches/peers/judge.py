@@ -56,7 +56,7 @@ def pierces(p, q, face, normal):
     a, b = dot(minus(p, face[0]), normal), dot(minus(q, face[0]), normal)
     if a * b >= 0:
         return False
-    # Where it meets the plane, times (a - b): the face is scaled alike.
+    # Its point in the plane, times (a - b): the face is scaled alike.
     scale = abs(a - b)
     at = tuple((a * q[k] - b * p[k]) * (1 if a > b else -1) for k in range(3))
     return over(at, [tuple(c * scale for c in v) for v in face], normal)

@@ -34,7 +34,7 @@
 //
 // Threads
 // - Use a handle from one thread at a time. All detectors of a device count as one handle.
-//   `nearmiss_device_name`, `_is_gpu`, `_set_memory_limit` and `_free` may run beside them. An
+//   `nearmiss_device_name`, `_is_gpu`, `_set_memory_limit` and `_free` may run at the same time. An
 //   answer is a handle by itself.
 // - Any thread and any signal handler may call `nearmiss_interrupt` and `nearmiss_interrupt_clear`.
 // - The first CPU or detector starts one thread a processor. They stay. A process that was forked

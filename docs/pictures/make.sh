@@ -1,5 +1,5 @@
 #!/bin/sh
-# Makes the pictures of this folder anew with the program: the same bytes on every machine.
+# Makes the pictures of this folder again with the program: the same bytes on every machine.
 # Takes the program, by default the one that `cargo build --release -p nearmiss-cli` makes.
 set -eu
 here=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)

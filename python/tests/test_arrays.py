@@ -208,7 +208,7 @@ def test_an_answer_that_has_moved_is_not_given():
             np.from_dlpack(answer.status)
     del detector, answer
     gc.collect()
-    # What was given is the taker's.
+    # A capsule that was taken belongs to the taker.
     assert kept.tolist()[2:4] == [0, 0]
 
 

@@ -277,7 +277,7 @@ def test_a_forked_process_is_told():
     own.continuous()
     child = os.fork()
     if child == 0:
-        # Where it waits for ever this ends it.
+        # This ends it if it waits for ever.
         signal.alarm(60)
         try:
             own.continuous()

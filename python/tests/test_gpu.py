@@ -267,7 +267,7 @@ def test_frames_beside_a_graph_that_another_thread_records(stream):
     def ask():
         recording.wait()
         try:
-            # Opened, made and asked while the other records.
+            # Opened, made and queried while the other records.
             detector = nm.Detector(nm.Body(t0, faces), device=nm.Device(gpu=0))
             told.extend(detector.step({0: (t0, t1)}, nm.Continuous()).hash for _ in range(3))
         finally:
@@ -315,7 +315,7 @@ def test_arrays_of_an_update_are_kept_until_they_are_read(stream):
     detector = nm.Detector(body, device=nm.Device(gpu=0))
     detector.near(0.01)
     for _ in range(20):
-        # Of the stream that is current, which is not the detector's.
+        # On the current stream, which is not the detector's.
         detector.update({0: torch.from_numpy(t1).cuda()})
         spoiled = [torch.full(t1.shape, float("nan"), device="cuda") for _ in range(4)]
         assert detector.query(near).hash == wanted.hash

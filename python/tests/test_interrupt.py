@@ -15,7 +15,7 @@ import nearmiss as nm
 V, F = two_triangles()
 # Triangles in one place, all of which meet: a frame takes long.
 LONG = np.tile(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32), (3000, 1)), np.arange(9000).reshape(-1, 3)
-# What a machine that does much else may add to the 0.2 s that are promised.
+# Time that a busy machine may add to the promised 0.2 s.
 SOON = 2.0
 
 
@@ -46,7 +46,7 @@ def test_a_signal_ends_a_frame(threads):
     v, f = LONG
     detector = nm.Detector(nm.Body(v, f), device=nm.Device("cpu", threads=threads))
     interrupted(lambda: detector.step({0: (v, v + np.float32(0.25))}, nm.Continuous()))
-    # Where that frame said: the same handle, another answer in time.
+    # In that frame: the same handle, another answer in time.
     detector.replace(0, nm.Body(V, F))
     assert len(detector.continuous()) == len(nm.Detector(nm.Body(V, F), device=detector.device).continuous())
 
