@@ -3,8 +3,8 @@
 use super::coherent::{compare_and_swap, fence, load_coherent, store_coherent};
 use super::raw::{
     BROADCAST, address, atomic, ballot, barrier_or, element, load_global, load_shared32, load_shared64,
-    load_word, match_any, scratch_address, shuffle, shuffle_up, store_shared32, store_shared64, store_word,
-    sync_threads, sync_warp, warp_any, warp_sum,
+    load_word, match_any, reconverge, scratch_address, shuffle, shuffle_up, store_shared32, store_shared64,
+    store_word, sync_threads, sync_warp, warp_any, warp_sum,
 };
 use crate::abi::Span;
 use crate::exec::{BINS, Block, Lane, Shared, Slot, WARP, Word};
@@ -113,7 +113,7 @@ impl Lane for Thread {
     }
     #[inline(always)]
     fn meet(&self) {
-        sync_warp();
+        reconverge();
     }
     #[inline(always)]
     fn get<T: Word>(&self, words: Shared<T>, i: u32) -> T {

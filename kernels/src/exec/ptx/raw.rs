@@ -77,17 +77,29 @@ pub fn sync_threads() {
     unsafe { barrier_sync(0) }
 }
 
-/// Reconverges the lanes of a warp, for certain. Every collective operation begins with it. Stores
-/// of lanes to shared memory before it are visible to all of them after it.
+/// Brings the lanes of a warp together where the assembler finds them parted. Every collective
+/// operation begins with it. Stores of lanes to shared memory before it are visible to all of them
+/// after it.
+///
+/// The assembler leaves it out where its analysis finds the warp together. Behind loops that lanes
+/// leave at different turns that analysis is wrong: such a phase ends with [`reconverge`].
+/// `.ci/lanes.py` proves for each kernel that the lanes are together where they must be.
+#[inline(always)]
+pub fn sync_warp() {
+    // SAFETY: called by all 32 threads of the warp.
+    unsafe { bar_warp_sync(ALL) }
+}
+
+/// Reconverges the lanes of a warp, for certain: [`Lane::meet`](crate::exec::Lane::meet).
 ///
 /// A shuffle's mask that names 32 lanes does not make it wait. ptxas (12.9, 13.0, the driver's)
 /// waits only if its analysis finds the warp diverged. Behind loops that lanes leave at different
 /// turns that analysis is wrong. It removes a warp barrier for the same reason, unless the mask is
 /// opaque to it. This mask is all lanes, from two registers that are opaque to it. `.ci/ptxas.sh`
 /// looks for the instruction. The registers are read each time, or the mask would occupy a register
-/// in between.
+/// in between. It costs a match, a reduction and a vote.
 #[inline(always)]
-pub fn sync_warp() {
+pub fn reconverge() {
     let mask: u32;
     // SAFETY: reads special registers; called by all 32 threads of the warp.
     unsafe {

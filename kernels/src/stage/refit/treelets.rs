@@ -61,6 +61,7 @@ pub fn treelets<R: Real, V: Volume, B: Block>(block: &mut B, args: &TreeletsArgs
             }
             i += lanes;
         }
+        lane.meet();
     });
     for round in 0..rounds {
         block.phase(|lane| {
@@ -87,6 +88,7 @@ pub fn treelets<R: Real, V: Volume, B: Block>(block: &mut B, args: &TreeletsArgs
                 chip.put(lane, from, volume);
                 lane.store_relaxed(args.nodes, node, merge.link().with(volume));
             }
+            lane.meet();
         });
     }
     let blocks = block.blocks() as u64;
@@ -118,6 +120,7 @@ fn top<R: Real, V: Volume, B: Block>(block: &mut B, args: &TreeletsArgs<R, V>, s
             lane.put(starts, i, lane.read(args.top_starts, i + 1));
             i += lanes;
         }
+        lane.meet();
     });
     while depth > 0 {
         depth -= 1;
@@ -142,6 +145,7 @@ fn top<R: Real, V: Volume, B: Block>(block: &mut B, args: &TreeletsArgs<R, V>, s
                     merge = lane.read(args.top, i);
                 }
             }
+            lane.meet();
         });
     }
 }

@@ -93,6 +93,8 @@ pub fn sample<R: Real, V: Volume, B: Block>(block: &mut B, args: &NearestArgs<R,
     let leaves = args.leaf_nodes.len();
     let mut base = block.block() * block.lanes();
     let stride = block.blocks() * block.lanes();
+    // As in `within`.
+    block.phase(|lane| lane.meet());
     while base < args.samples {
         block.phase(|lane| {
             let i = base + lane.lane();

@@ -141,6 +141,7 @@ pub fn triangles<const HORIZON: bool, V: Volume, B: Block>(block: &mut B, args: 
             }
             *masks.of(lane) = mask;
             *counts.of(lane) = mask.count_ones();
+            lane.meet();
         });
         let tested = (2 * LANES + LANES * height) as u64;
         tests += tested;
@@ -161,6 +162,7 @@ pub fn triangles<const HORIZON: bool, V: Volume, B: Block>(block: &mut B, args: 
                     }
                     at += 1;
                 }
+                lane.meet();
             });
             done += now;
             fill += now;
@@ -211,6 +213,7 @@ fn write<const HORIZON: bool, V: Volume, B: Block>(
         }
         *masks.of(lane) = mask;
         *counts.of(lane) = mask.count_ones();
+        lane.meet();
     });
     let base = args.pairs.append(block, &mut counts);
     block.phase(|lane| {
@@ -223,5 +226,6 @@ fn write<const HORIZON: bool, V: Volume, B: Block>(
             args.pairs.put(lane, at, Pair { a: p.min(q), b: p.max(q) });
             at += 1;
         }
+        lane.meet();
     });
 }
