@@ -38,6 +38,8 @@ pub trait Precision: Real + Send {
     type StartExact: Entry<Args = DiscreteArgs<Self>>;
     /// Turns triangle pairs into pairs of features whose boxes meet.
     type Features: Entry<Args = FeaturesArgs<Self>>;
+    /// The same of those that meet before a horizon.
+    type FeaturesBefore: Entry<Args = FeaturesArgs<Self>>;
     /// The same for triangles at one time.
     type FeaturesAtRest: Entry<Args = FeaturesArgs<Self>>;
     /// Finds pairs of features within a distance, at one time.
@@ -97,6 +99,7 @@ impl Precision for f32 {
     type StartWide = entry::narrow_start_wide_f32;
     type StartExact = entry::narrow_start_exact_f32;
     type Features = entry::narrow_features_f32;
+    type FeaturesBefore = entry::narrow_features_before_f32;
     type FeaturesAtRest = entry::narrow_features_at_rest_f32;
     type Near = entry::narrow_near_f32;
     type Least = entry::narrow_least_f32;
@@ -144,6 +147,7 @@ impl Precision for f64 {
     type StartWide = entry::narrow_start_filter_f64;
     type StartExact = entry::narrow_start_exact_f64;
     type Features = entry::narrow_features_f64;
+    type FeaturesBefore = entry::narrow_features_before_f64;
     type FeaturesAtRest = entry::narrow_features_at_rest_f64;
     type Near = entry::narrow_near_f64;
     type Least = entry::narrow_least_f64;

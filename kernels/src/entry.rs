@@ -14,10 +14,10 @@ use crate::queue::worker;
 use crate::sort;
 use crate::stage::construct::{cuts, graft, morton, tile_filters, tree, treelet};
 use crate::stage::fit::{leaves as fit_of_leaves, rims, tiles as fit_of_tiles};
+use crate::stage::narrow::course::{Moves, Rests};
 use crate::stage::narrow::discrete::{Start, Still};
-use crate::stage::narrow::features::{Moves, Rests};
 use crate::stage::narrow::{
-    below_precision, climb, cull, discrete, features, near, nearest, separate, slice, solve,
+    below_precision, certain, climb, cull, discrete, features, near, nearest, separate, slice, solve,
 };
 use crate::stage::refit::{levels, tiles as refit_of_tiles, treelets};
 use crate::stage::traverse::{
@@ -302,18 +302,20 @@ kernels! {
     narrow_moller_f64: discrete::moller::<f64, B>, [DiscreteArgs<f64>], WIDE, 0;
     narrow_filter_f32: discrete::filter::<f32, Still, B>, [DiscreteArgs<f32>], WIDE, discrete::shared_bytes(WIDE), registers = 64;
     narrow_filter_f64: discrete::filter::<f64, Still, B>, [DiscreteArgs<f64>], WIDE, discrete::shared_bytes(WIDE);
-    narrow_wide_f32: discrete::wide::<Still, B>, [DiscreteArgs<f32>], NARROW, 0;
-    narrow_exact_f32: discrete::exact::<f32, Still, B>, [DiscreteArgs<f32>], NARROW, discrete::EXACT_SHARED;
-    narrow_exact_f64: discrete::exact::<f64, Still, B>, [DiscreteArgs<f64>], NARROW, discrete::EXACT_SHARED;
+    narrow_wide_f32: certain::wide::<Still, B>, [DiscreteArgs<f32>], NARROW, certain::SHARED;
+    narrow_exact_f32: certain::exact::<f32, Still, B>, [DiscreteArgs<f32>], NARROW, certain::SHARED;
+    narrow_exact_f64: certain::exact::<f64, Still, B>, [DiscreteArgs<f64>], NARROW, certain::SHARED;
     narrow_start_filter_f32: discrete::filter::<f32, Start, B>, [DiscreteArgs<f32>], WIDE, discrete::shared_bytes(WIDE), registers = 64;
     narrow_start_filter_f64: discrete::filter::<f64, Start, B>, [DiscreteArgs<f64>], WIDE, discrete::shared_bytes(WIDE);
-    narrow_start_wide_f32: discrete::wide::<Start, B>, [DiscreteArgs<f32>], NARROW, 0;
-    narrow_start_exact_f32: discrete::exact::<f32, Start, B>, [DiscreteArgs<f32>], NARROW, discrete::EXACT_SHARED;
-    narrow_start_exact_f64: discrete::exact::<f64, Start, B>, [DiscreteArgs<f64>], NARROW, discrete::EXACT_SHARED;
-    narrow_features_f32: features::features::<f32, Moves, B>, [FeaturesArgs<f32>], NARROW, features::shared_bytes(NARROW), registers = 80;
-    narrow_features_f64: features::features::<f64, Moves, B>, [FeaturesArgs<f64>], NARROW, features::shared_bytes(NARROW);
-    narrow_features_at_rest_f32: features::features::<f32, Rests, B>, [FeaturesArgs<f32>], NARROW, features::shared_bytes(NARROW);
-    narrow_features_at_rest_f64: features::features::<f64, Rests, B>, [FeaturesArgs<f64>], NARROW, features::shared_bytes(NARROW);
+    narrow_start_wide_f32: certain::wide::<Start, B>, [DiscreteArgs<f32>], NARROW, certain::SHARED;
+    narrow_start_exact_f32: certain::exact::<f32, Start, B>, [DiscreteArgs<f32>], NARROW, certain::SHARED;
+    narrow_start_exact_f64: certain::exact::<f64, Start, B>, [DiscreteArgs<f64>], NARROW, certain::SHARED;
+    narrow_features_f32: features::features::<f32, Moves, false, B>, [FeaturesArgs<f32>], NARROW, features::shared_bytes(NARROW), registers = 80;
+    narrow_features_before_f32: features::features::<f32, Moves, true, B>, [FeaturesArgs<f32>], NARROW, features::shared_bytes(NARROW), registers = 80;
+    narrow_features_f64: features::features::<f64, Moves, false, B>, [FeaturesArgs<f64>], NARROW, features::shared_bytes(NARROW);
+    narrow_features_before_f64: features::features::<f64, Moves, true, B>, [FeaturesArgs<f64>], NARROW, features::shared_bytes(NARROW);
+    narrow_features_at_rest_f32: features::features::<f32, Rests, false, B>, [FeaturesArgs<f32>], NARROW, features::shared_bytes(NARROW);
+    narrow_features_at_rest_f64: features::features::<f64, Rests, false, B>, [FeaturesArgs<f64>], NARROW, features::shared_bytes(NARROW);
     narrow_cull_f32: cull::cull::<f32, B>, [CullArgs<f32>], RUNG, 0;
     narrow_cull_f64: cull::cull::<f64, B>, [CullArgs<f64>], RUNG, 0;
     narrow_vf_f32_f32: solve::vf::<f32, f32, B>, [SolveArgs<f32>], WIDE, 0;

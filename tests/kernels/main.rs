@@ -3,6 +3,7 @@
 
 mod bounds;
 mod bvtt;
+mod direction;
 mod emulator;
 mod isolate;
 mod limits;

@@ -54,9 +54,9 @@ fn lost<R: Real>(seed: u64) -> usize {
         // A vertex over the face, and the first edges cross, wherever the step is.
         let (p, q) = (level(a, false), level(b, true));
         let vertex = [moving([0.5, 0.5], a), moving([9.0, 9.0], a), moving([9.0, 8.0], a)];
-        assert_ne!(meeting(&vertex, &q, R::ZERO, R::ONE) & 1, 0, "vertex and face at {heights:?}");
-        assert_ne!(meeting(&q, &vertex, R::ZERO, R::ONE) & 8, 0, "face and vertex at {heights:?}");
-        assert_ne!(meeting(&p, &q, R::ZERO, R::ONE) & 1 << 6, 0, "edges at {heights:?}");
+        assert_ne!(meeting(&vertex, &q, 0.0, 1.0) & 1, 0, "vertex and face at {heights:?}");
+        assert_ne!(meeting(&q, &vertex, 0.0, 1.0) & 8, 0, "face and vertex at {heights:?}");
+        assert_ne!(meeting(&p, &q, 0.0, 1.0) & 1 << 6, 0, "edges at {heights:?}");
         lost += !ungrown(heights) as usize;
     }
     lost
@@ -77,11 +77,7 @@ fn features_within_the_gap_are_asked_and_beyond_are_not() {
         for (above, asked) in [(0.5, true), (1.0, true), (1.1, false)] {
             let z = [f64::of(above * gap); 2];
             let p = level(z, false);
-            assert_eq!(
-                meeting(&p, &q, more::<f64>(gap), 1.0) & 1 << 6 != 0,
-                asked,
-                "{above} of a gap of {gap}"
-            );
+            assert_eq!(meeting(&p, &q, more(gap), 1.0) & 1 << 6 != 0, asked, "{above} of a gap of {gap}");
         }
     }
 }

@@ -17,7 +17,7 @@ pub const STAGES: [(&str, &str); 9] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 57] = [
+const KERNELS: [(&str, &str); 58] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
     ("place", "poses applied, uploads put in place, other bodies at rest"),
     ("construct_bounds", "the box of each body's centres"),
@@ -58,6 +58,7 @@ const KERNELS: [(&str, &str); 57] = [
     ("narrow_start_wide", "the same in f64, of pairs left uncertain"),
     ("narrow_start_exact", "the same by exact signs, of pairs left uncertain"),
     ("narrow_features_at_rest", "vertex/face and edge/edge pairs by their boxes"),
+    ("narrow_features_before", "the same that meet before the earliest time"),
     ("narrow_features", "vertex/face and edge/edge pairs by their boxes in motion"),
     ("narrow_cull", "pairs that signs reject"),
     ("narrow_vf", "vertex/face pairs, by the cubic"),

@@ -271,9 +271,12 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
             Step::Features => {
                 let gap = self.solver.certified().filter(|certified| certified.is_apart());
                 let known = self.known(given.is_sample);
-                given
-                    .features
-                    .run::<R, R::Features>(given, (gap.map_or(0.0, Certified::listed_within), known))
+                let numbers = (gap.map_or(0.0, Certified::listed_within), known);
+                if known.is_empty() {
+                    given.features.run::<R, R::Features>(given, numbers)
+                } else {
+                    given.features.run::<R, R::FeaturesBefore>(given, numbers)
+                }
             }
             Step::Cull => self.cull(given),
             Step::Solve => self.solve(given),

@@ -12,6 +12,7 @@ use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Listed, in_order};
 use crate::query::TriangleTest;
 use nearmiss_kernels::abi::{DiscreteArgs, DiscreteFlags, Output, Pair, counter};
+use nearmiss_kernels::stage::narrow::certain::LANES_A_PAIR;
 
 /// The lists of a discrete query.
 pub struct DiscreteNarrow {
@@ -81,10 +82,15 @@ impl DiscreteNarrow {
         };
         launch::striding::<R::Filter>(device, capacity, &candidates)?;
         let left = args(first.output(given.counters), last);
-        let Some(last) = last else { return launch::striding::<R::Exact>(device, first.capacity(), &left) };
-        launch::striding::<R::Wide>(device, first.capacity(), &left)?;
-        launch::striding::<R::Exact>(device, last.capacity(), &args(last.output(given.counters), None))
+        let Some(last) = last else { return launch::striding::<R::Exact>(device, lanes(first), &left) };
+        launch::striding::<R::Wide>(device, lanes(first), &left)?;
+        launch::striding::<R::Exact>(device, lanes(last), &args(last.output(given.counters), None))
     }
+}
+
+/// Returns the lanes that pairs of a list can use: one a sign where they are few.
+pub fn lanes(uncertain: &List<Pair>) -> usize {
+    uncertain.capacity() * LANES_A_PAIR as usize
 }
 
 impl<R: Precision> Narrow<R> for DiscreteNarrow {

@@ -1,6 +1,7 @@
 //! The triangle pairs that share a point at the start of a step: counted, by the kernels of a
 //! discrete query.
 
+use super::discrete::lanes;
 use super::{NarrowContext, growable};
 use crate::device::Device;
 use crate::error::Error;
@@ -69,7 +70,7 @@ impl StartCheck {
             } else {
                 launch::striding::<R::StartWide>(device, room, &args)
             }?;
-            (left, room) = (list.output(given.counters), list.capacity());
+            (left, room) = (list.output(given.counters), lanes(list));
         }
         launch::striding::<R::StartExact>(device, room, &args(left, None))
     }

@@ -106,6 +106,10 @@ pub trait Tolerance: Sized {
     /// `12u`: one sum more, the sum of two determinants, the third and its product. Each of three
     /// mixtures adds `3u`: `21u`. The rest covers the permanent's own roundings.
     const ISOLATE_CUBIC: Self;
+    /// Error of the differences of positions whose paths are swept: `4u`. One rounding, or one and
+    /// a 2^-29th of f64 differences rounded to f32. A window compares two, and extents have two;
+    /// the rest is for the bound's own roundings. Relative to the largest of the axis.
+    const SWEPT_ROUNDED: Self;
     /// How far a component of a computed control vector may be from the exact one, relative to the
     /// largest: `6u`. One rounding of the input, three of the mixture, and two for the computed
     /// motion within the time around it.
@@ -156,6 +160,7 @@ impl Tolerance for f32 {
     const ISOLATE_WINDOW: f32 = 16.0 * U32;
     const ISOLATE_MARGIN: f32 = 1.0 / 4096.0;
     const ISOLATE_CUBIC: f32 = 40.0 * U32;
+    const SWEPT_ROUNDED: f32 = 4.0 * U32;
     const ISOLATE_PLACE: f32 = 6.0 * U32;
     const ISOLATE_TURN: f32 = 10.0 * U32;
     const ISOLATE_SIDE: f32 = 6.0 * U32;
@@ -189,6 +194,7 @@ impl Tolerance for f64 {
     const ISOLATE_WINDOW: f64 = 16.0 * U64;
     const ISOLATE_MARGIN: f64 = 1.0 / 67108864.0;
     const ISOLATE_CUBIC: f64 = 40.0 * U64;
+    const SWEPT_ROUNDED: f64 = 4.0 * U64;
     const ISOLATE_PLACE: f64 = 6.0 * U64;
     const ISOLATE_TURN: f64 = 10.0 * U64;
     const ISOLATE_SIDE: f64 = 6.0 * U64;
@@ -200,6 +206,11 @@ impl Tolerance for f64 {
 /// Largest size of a coordinate that f32 is computed with, 2^60: dot products of differences stay
 /// finite, 3 (2^61)^2 < 2^124. Length.
 pub const SINGLE_MOST: f64 = f64::from_bits((1023 + 60) << 52);
+
+/// Error of the difference of two heights of corners in a direction: `5u` of f32, relative to the
+/// sum of `|n_k| |x_k|` over both. Four roundings each (difference, product, two sums); the fifth
+/// is for those of the bound, `40u` of it. Derived in `prim::direction`. Ratio.
+pub const DIRECTION: f32 = 5.0 * U32;
 
 /// Largest extent, and one over the smallest, that a continuous test takes without scaling. Beyond
 /// them differences are first scaled by a power of two, exactly. `2^20`, so that cubes stay clear

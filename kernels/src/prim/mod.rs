@@ -4,6 +4,7 @@
 //! | --- | --- | --- |
 //! | [`moller`] | discrete, in plain floats; the paper's | can miss |
 //! | [`tri_tri`] on signs of [`orient`] | discrete, floats with a bound | right or uncertain |
+//! | [`at_once`], all of those signs | discrete, floats with a bound | right or uncertain |
 //! | [`tri_tri`] on signs of [`exact`] | discrete, in integers | always right |
 //! | [`cubic`] | continuous, the coplanarity cubic; the paper's | can miss |
 //! | [`isolate`] | continuous, in closed form | no miss, never late |
@@ -12,10 +13,12 @@
 //! | [`nearest`] | distance of two triangles at rest | proven bounds |
 //!
 //! [`stencil`] names the fifteen vertex/face and edge/edge tests of two triangles. [`sweep`]
-//! selects those whose boxes meet.
+//! selects those whose boxes meet. [`direction`] first leaves out triangles that need none of them.
 
 pub mod adjacent;
+pub mod at_once;
 pub mod cubic;
+pub mod direction;
 pub mod exact;
 mod flat;
 pub mod inclusion;

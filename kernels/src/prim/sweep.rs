@@ -4,6 +4,7 @@
 
 use super::cubic::Moving;
 use super::isolate::pair::Window;
+use crate::math::tolerance::Tolerance;
 use crate::math::{Real, Vec3};
 
 /// Tests of two triangles.
@@ -51,9 +52,11 @@ pub type Corners<R> = [Moving<R>; 3];
 /// there is such a part. In it the boxes around the triangles come within the gap, and it ends at
 /// the horizon. Boxes of the first triangle grow by the gap and by all roundings.
 ///
-/// A corner at such a time errs by `3.1u` of the larger of its ends: the complement, two products,
-/// a sum. Growing adds `u`: `INCLUSION_INPUT` of the largest coordinate for each of both triangles.
-/// A product that underflows is within `INCLUSION_UNDERFLOW`.
+/// Corners are differences that were rounded: `SWEPT_ROUNDED` of the largest for each of both
+/// triangles. The window's numbers err by as much, and its own roundings are relative to itself. A
+/// corner at a time of the part errs by `3.1u` more, of the larger of its ends: the complement, two
+/// products, a sum. Growing adds `u`: `INCLUSION_INPUT`. A number that underflows is within
+/// `INCLUSION_UNDERFLOW`.
 ///
 /// With a horizon, a pair may be left out in two cases. The boxes that `Pair::window` moves with
 /// its features first meet behind the horizon. Or they never meet, which that window finds, too.
@@ -63,35 +66,40 @@ pub type Corners<R> = [Moving<R>; 3];
 /// those of their triangles only behind that. Then their windows are empty by more than they are
 /// widened.
 #[inline(always)]
-fn swept<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R, horizon: R) -> (bool, [[Swept<R>; 3]; 2]) {
+fn swept(p: &Corners<f32>, q: &Corners<f32>, gap: f32, horizon: f32) -> (bool, [[Swept<f32>; 3]; 2]) {
     let mut window = Window::new();
-    let (cut, sooner) = if horizon < R::ONE {
-        (horizon * R::INCLUSION_UP, R::of(3.0) * R::ISOLATE_WINDOW)
-    } else {
-        (R::ZERO, R::ZERO)
-    };
+    let (cut, sooner) =
+        if horizon < 1.0 { (horizon * f32::INCLUSION_UP, 3.0 * f32::ISOLATE_WINDOW) } else { (0.0, 0.0) };
     // One axis after the other, each by a constant number: nothing goes to memory on the GPU.
     let grow = Vec3([
         axis(0, &mut window, p, q, (gap, cut)),
         axis(1, &mut window, p, q, (gap, cut)),
         axis(2, &mut window, p, q, (gap, cut)),
     ]);
-    let whole = window.within(R::ONE);
+    let whole = window.within(1.0);
     let begins = whole.is_some_and(|part| part.0 <= horizon);
-    let (from, to) = whole.unwrap_or((R::ZERO, R::ONE));
-    let part = ((from - sooner).greater(R::ZERO), to.lesser(horizon));
-    (begins, [ways(p, part, grow), ways(q, part, Vec3([R::ZERO; 3]))])
+    let (from, to) = whole.unwrap_or((0.0, 1.0));
+    let part = ((from - sooner).greater(0.0), to.lesser(horizon));
+    (begins, [ways(p, part, grow), ways(q, part, Vec3([0.0; 3]))])
 }
 
 /// Clips the part of the step by one axis; by how much boxes grow on it: the gap, roundings, and
 /// that part of the extents at the end of the step.
 #[inline(always)]
-fn axis<R: Real>(k: usize, window: &mut Window<R>, p: &Corners<R>, q: &Corners<R>, (gap, part): (R, R)) -> R {
+fn axis(
+    k: usize,
+    window: &mut Window<f32>,
+    p: &Corners<f32>,
+    q: &Corners<f32>,
+    (gap, part): (f32, f32),
+) -> f32 {
     let (p, q) = (range(p, k), range(q, k));
+    let reach = reach(p) + reach(q);
+    let gap = gap + reach * f32::SWEPT_ROUNDED + f32::INCLUSION_UNDERFLOW;
     window.clip([p[0].1 - q[0].0 + gap, p[1].1 - q[1].0 + gap]);
     window.clip([q[0].1 - p[0].0 + gap, q[1].1 - p[1].0 + gap]);
     let extents = (p[1].1 - p[1].0) + (q[1].1 - q[1].0);
-    (reach(p) + reach(q)) * R::INCLUSION_INPUT + extents * part + gap + R::INCLUSION_UNDERFLOW
+    reach * f32::INCLUSION_INPUT + extents * part + gap
 }
 
 /// The least and the largest coordinate of three corners, at both ends of the step.
@@ -132,9 +140,17 @@ pub fn more<R: Real>(gap: f64) -> R {
 
 /// The tests of two triangles whose features' boxes come within a gap, and not first behind the
 /// horizon. The gap is [`more`] of the given one; the horizon is a time in (0, 1].
+///
+/// In f32, by differences from the middle of both first corners, which moves from one end of the
+/// step to the other. Boxes that move with features move with it, and share points at the same
+/// times. So neither a distant origin nor a common motion costs anything.
 #[inline(always)]
-pub fn meeting<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R, horizon: R) -> u32 {
-    let (meet, boxes) = swept(p, q, gap, horizon);
+pub fn meeting<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: f32, horizon: f32) -> u32 {
+    let middle = |a: Vec3<R>, b: Vec3<R>| (a + b) * R::of(0.5);
+    let (from, to) = (middle(p[0].t0, q[0].t0), middle(p[0].t1, q[0].t1));
+    let of = |x: Moving<R>| Moving { t0: (x.t0 - from).narrow(), t1: (x.t1 - to).narrow() };
+    let (p, q) = ([of(p[0]), of(p[1]), of(p[2])], [of(q[0]), of(q[1]), of(q[2])]);
+    let (meet, boxes) = swept(&p, &q, gap, horizon);
     if meet { sharing(&boxes, Swept::apart) } else { 0 }
 }
 

@@ -9,7 +9,7 @@ pub use super::signs::{Certain, Exact, Filter, Signs, Wide};
 
 use super::flat::flat_meet;
 use super::orient::Plane;
-use crate::math::{Real, Vec3};
+use crate::math::{Real, Vec3, pick};
 
 /// Whether the closed triangles `p` and `q` share a point; `None` only if a needed sign is.
 ///
@@ -46,16 +46,21 @@ pub fn parted<R: Real>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> bool {
 /// independent: lanes can compute them side by side.
 pub const SIGNS: u32 = 15;
 
+/// The four points of sign number `which` of those of [`SIGNS`], among the corners of two triangles.
+#[inline(always)]
+pub fn points_of_sign<T: Copy>(p: [T; 3], q: [T; 3], which: u32) -> [T; 4] {
+    let (i, k) = (which / 3, which % 3);
+    match i {
+        0 => [p[0], p[1], p[2], pick(q, k)],
+        1 => [q[0], q[1], q[2], pick(p, k)],
+        _ => [pick(p, i - 2), pick(p, (i - 1) % 3), pick(q, k), pick(q, (k + 1) % 3)],
+    }
+}
+
 /// Sign number `which` of those of [`SIGNS`].
 #[inline]
 pub fn sign<R: Real, S: Signs<R>>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3], which: u32) -> Option<i32> {
-    let at = |t: &[Vec3<R>; 3], i: u32| t[i as usize % 3];
-    let (i, k) = (which / 3, which % 3);
-    let [a, b, c, d] = match i {
-        0 => [p[0], p[1], p[2], at(q, k)],
-        1 => [q[0], q[1], q[2], at(p, k)],
-        _ => [at(p, i - 2), at(p, i - 1), at(q, k), at(q, k + 1)],
-    };
+    let [a, b, c, d] = points_of_sign(*p, *q, which);
     S::orient3d(a, b, c, d)
 }
 

@@ -2,6 +2,7 @@
 
 use super::{ORDERS, anywhere, corners, on_grid, random, seen};
 use nearmiss_kernels::math::{Real, Vec3};
+use nearmiss_kernels::prim::at_once::meets_at_once;
 use nearmiss_kernels::prim::moller::moller;
 use nearmiss_kernels::prim::tri_tri::{
     Certain, Exact, Filter, SIGNS, Signs, Wide, decided, meets, meets_exactly, sign,
@@ -39,6 +40,7 @@ fn in_order<R: Real>(p: &Triangle, q: &Triangle, order: usize, truth: bool) {
         assert_eq!(decided(&signs), (!in_a_plane).then_some(truth), "{}", what());
         assert!(meets::<R, Filter>(&a, &b).is_none_or(|x| x == truth), "{}", what());
         assert!(meets::<R, Wide>(&a, &b).is_none_or(|x| x == truth), "{}", what());
+        assert!(meets_at_once(a, b).is_none_or(|x| x == truth), "{}", what());
     }
 }
 
@@ -63,6 +65,22 @@ fn a_sign_that_is_turned_is_noticed() {
     }
     println!("of 400 pairs, told another answer by sign: {noticed:?}");
     assert!(noticed.iter().all(|&n| n > 4), "{noticed:?}");
+}
+
+/// Of triangles without a zero sign, all signs at once decide nearly all, either way.
+#[test]
+fn all_signs_at_once_decide_most_pairs() {
+    let (mut r, mut met, mut apart) = (random(7), 0, 0);
+    for _ in 0..4000 {
+        let (p, q) = (anywhere(&mut r), anywhere(&mut r));
+        let [p, q] = [p, q].map(|t| corners::<f32>(&t));
+        let found = meets_at_once(p, q);
+        assert!(found.is_none_or(|found| found == meets_exactly(&p, &q)), "{p:?} {q:?}");
+        met += (found == Some(true)) as u32;
+        apart += (found == Some(false)) as u32;
+    }
+    println!("of 4,000 pairs {met} meet, {apart} are apart");
+    assert!(met > 40 && apart > 40 && met + apart > 3_990);
 }
 
 #[test]

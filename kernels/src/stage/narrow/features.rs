@@ -1,7 +1,8 @@
 //! # Features: triangle pairs → vertex/face and edge/edge candidates
 //! Paper    the thesis, section 6.2.5: "each of the 15 elementary vertex/face and edge/edge tests".
 //! Launch   a lane a triangle pair; a grid of any size strides.
-//!          [`Moves`] over a step, [`Rests`] at rest; each is a kernel of its own.
+//!          [`super::course::Moves`] over a step, [`super::course::Rests`] at rest; each is a
+//!          kernel of its own.
 //! Reads    candidates (pairs that share a vertex among them), facets, positions of both frames, or
 //!          of one.
 //! Writes   those vertex/face and edge/edge pairs whose boxes come within the gap, each once.
@@ -15,6 +16,8 @@
 //!          Boxes are those of the time in which the boxes around the two triangles, moving with
 //!          them, overlap.
 //!          Outside of it no feature of one can meet one of the other.
+//!          A direction that parts two triangles throughout the step parts their features: such
+//!          pairs are left out first ([`crate::prim::direction`]).
 //!          With a known earliest time none is listed whose boxes first come within the gap behind
 //!          the horizon.
 //! Room     vf, ee: counted past the end, grown, run again.
@@ -22,30 +25,37 @@
 //!          Owners are the representative triangles of Curtis, Tamstorf, Manocha, "Fast collision
 //!          detection for deformable models using representative-triangles", 2008.
 //! Cost     8 B pair, 64 B facets, 192 B positions (gathered; at rest 96 B).
-//!          Some 500 operations, half of them for the 15 tests (at rest those alone, 300). No
-//!          branches; on a CPU in vectors.
+//!          Directions take some 380 operations, for pairs that own a test. Those that they leave
+//!          wait on chip until there is one a lane. The 15 tests take some 500 (at rest 300).
+//!          No branches; on a CPU in vectors.
 //!          Output is numbered in shared memory first, so that all lanes write.
 
-use super::{expect, moving};
-use crate::abi::{Facet, FeaturesArgs, Pair, Positions};
+use super::course::{Course, Gap};
+use super::expect;
+use super::waiting::{Waiting, waiting_bytes};
+use crate::abi::{Facet, FeaturesArgs, Pair};
 use crate::bvh::horizon::Horizon;
-use crate::exec::{Block, Lane, RowMap, Slot};
-use crate::math::{Real, Vec3};
-use crate::prim::cubic::Moving;
-use crate::prim::sweep::{MOST, meeting, meeting_at_rest, more};
-use bytemuck::Pod;
+use crate::exec::{Block, Lane, OPEN, RowMap, Shared, Slot};
+use crate::math::{Real, pick};
+use crate::prim::direction::parted;
+use crate::prim::sweep::MOST;
 use core::marker::PhantomData;
+
+/// The common corners of two triangles. Bit j of row i: corner i of p is corner j of q.
+#[inline(always)]
+fn common(p: &Facet, q: &Facet) -> [u32; 3] {
+    let row = |i: usize| {
+        let same = |j: usize| ((p.corners[i] == q.corners[j]) as u32) << j;
+        same(0) | same(1) | same(2)
+    };
+    [row(0), row(1), row(2)]
+}
 
 /// Bits of the tests that two triangles own. 0 to 2: a vertex of p and q. 3 to 5: a vertex of q and
 /// p. 6 + 3 i + j: edge i of p and edge j of q. Features that share a vertex have no bit.
 #[inline(always)]
 fn owned(p: &Facet, q: &Facet) -> u32 {
-    // Bit j of row i: corner i of p is corner j of q.
-    let row = |i: usize| {
-        let same = |j: usize| ((p.corners[i] == q.corners[j]) as u32) << j;
-        same(0) | same(1) | same(2)
-    };
-    let rows = [row(0), row(1), row(2)];
+    let rows = common(p, q);
     let (of_p, of_q) = (p.owned, q.owned);
     let mut mask = of_q & 7 & !(rows[0] | rows[1] | rows[2]);
     mask <<= 3;
@@ -59,84 +69,10 @@ fn owned(p: &Facet, q: &Facet) -> u32 {
     mask
 }
 
-/// Whether triangles move, and the part of a vertex that the test of their boxes reads.
-pub trait Course<R: Real> {
-    /// The part of a vertex that it reads.
-    type Corner: Pod;
-    /// It will be read soon.
-    fn expect<L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32);
-    /// Reads it.
-    fn corner<L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32) -> Self::Corner;
-    /// The tests whose features' boxes come within a gap, and not first behind the horizon.
-    fn meeting(p: &[Self::Corner; 3], q: &[Self::Corner; 3], gap: R, horizon: R) -> u32;
-    /// Whether all its numbers are [`Real::is_single`].
-    fn is_single(corner: &Self::Corner) -> bool;
-    /// [`Course::meeting`] of such, in f32.
-    fn meeting_single(p: &[Self::Corner; 3], q: &[Self::Corner; 3], gap: f32, horizon: f32) -> u32;
-}
-
-/// Vertices move over a step.
-pub struct Moves;
-
-impl<R: Real> Course<R> for Moves {
-    type Corner = Moving<R>;
-    #[inline(always)]
-    fn expect<L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32) {
-        lane.expect(frames.moving, vertex);
-    }
-    #[inline(always)]
-    fn corner<L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32) -> Moving<R> {
-        moving(lane, frames, vertex)
-    }
-    #[inline(always)]
-    fn meeting(p: &[Moving<R>; 3], q: &[Moving<R>; 3], gap: R, horizon: R) -> u32 {
-        meeting(p, q, gap, horizon)
-    }
-    #[inline(always)]
-    fn is_single(corner: &Moving<R>) -> bool {
-        corner.is_single()
-    }
-    #[inline(always)]
-    fn meeting_single(p: &[Moving<R>; 3], q: &[Moving<R>; 3], gap: f32, horizon: f32) -> u32 {
-        let narrow = |[x, y, z]: &[Moving<R>; 3]| [x.narrow(), y.narrow(), z.narrow()];
-        meeting(&narrow(p), &narrow(q), gap, horizon)
-    }
-}
-
-/// Nothing moves; the gap is above 0.
-pub struct Rests;
-
-impl<R: Real> Course<R> for Rests {
-    type Corner = Vec3<R>;
-    #[inline(always)]
-    fn expect<L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32) {
-        lane.expect(frames.still, vertex);
-    }
-    #[inline(always)]
-    fn corner<L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32) -> Vec3<R> {
-        lane.read(frames.still, vertex).at
-    }
-    #[inline(always)]
-    fn meeting(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3], gap: R, _: R) -> u32 {
-        meeting_at_rest(p, q, gap)
-    }
-    #[inline(always)]
-    fn is_single(corner: &Vec3<R>) -> bool {
-        corner.is_single()
-    }
-    #[inline(always)]
-    fn meeting_single(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3], gap: f32, _: f32) -> u32 {
-        let narrow = |[x, y, z]: &[Vec3<R>; 3]| [x.narrow(), y.narrow(), z.narrow()];
-        meeting_at_rest(&narrow(p), &narrow(q), gap)
-    }
-}
-
 /// The tests whose features' boxes come within a gap, and not first behind the horizon.
 struct Meeting<R, C> {
-    gap: R,
-    horizon: R,
-    /// Both for f32 numbers.
-    single: [f32; 2],
+    gap: Gap<R>,
+    horizon: f32,
     course: PhantomData<C>,
 }
 
@@ -147,8 +83,8 @@ impl<R: Real, C: Course<R>> RowMap for Meeting<R, C> {
     fn at_once(&self, [p, q]: Self::Row) -> u32 {
         C::meeting(&p, &q, self.gap, self.horizon)
     }
-    // Boxes of f32 grow by the roundings of f32, so they list more. A solver without a proof would
-    // then find more, too.
+    // Which boxes meet depends on roundings, and what a solver without a proof finds on that. So
+    // numbers of f32 are computed as in a scene of f32, whatever else is in the scene.
     const HAS_SINGLES: bool = R::WIDE;
     #[inline(always)]
     fn is_single(&self, [[p, q, r], [s, t, u]]: &Self::Row) -> bool {
@@ -157,16 +93,67 @@ impl<R: Real, C: Course<R>> RowMap for Meeting<R, C> {
     }
     #[inline(always)]
     fn single_at_once(&self, [p, q]: Self::Row) -> u32 {
-        C::meeting_single(&p, &q, self.single[0], self.single[1])
+        C::meeting_single(&p, &q, self.gap.single, self.horizon)
     }
+}
+
+/// Whether a direction parts two triangles: [`OPEN`] if none of those tried does.
+struct Parted<R, C> {
+    gap: f32,
+    course: PhantomData<(R, C)>,
+}
+
+/// Result of [`Parted`] for triangles that are parted.
+const APART: u32 = 0;
+
+impl<R: Real, C: Course<R>> RowMap for Parted<R, C> {
+    type Number = R;
+    /// The corners of both triangles. The numbers of the last one are 1 if the first corners of
+    /// both are one vertex, 0 if no corners are.
+    type Row = [C::Corner; 7];
+    #[inline(always)]
+    fn at_once(&self, row: Self::Row) -> u32 {
+        let [a, b, c, d, e, f, common] = row;
+        let (p, q) = ([C::ends(a), C::ends(b), C::ends(c)], [C::ends(d), C::ends(e), C::ends(f)]);
+        if parted(&p, &q, self.gap, C::ends(common).t0[0] > R::ZERO) { APART } else { OPEN }
+    }
+    const HAS_SINGLES: bool = R::WIDE;
+    #[inline(always)]
+    fn is_single(&self, [a, b, c, d, e, f, _]: &Self::Row) -> bool {
+        let both = C::is_single(a) && C::is_single(d);
+        both && C::is_single(b) && C::is_single(e) && C::is_single(c) && C::is_single(f)
+    }
+    #[inline(always)]
+    fn single_at_once(&self, row: Self::Row) -> u32 {
+        let [a, b, c, d, e, f, common] = row;
+        let of = |corner: C::Corner| C::ends(corner).narrow();
+        let (p, q) = ([of(a), of(b), of(c)], [of(d), of(e), of(f)]);
+        if parted(&p, &q, self.gap, of(common).t0[0] > 0.0) { APART } else { OPEN }
+    }
+}
+
+/// The corners of two triangles, and whether the first ones are one vertex; `None` if more are.
+/// A common corner comes first.
+#[inline(always)]
+fn turned(p: &Facet, q: &Facet) -> Option<([u32; 3], [u32; 3], bool)> {
+    let rows = common(p, q);
+    let bits = rows[0] | rows[1] << 3 | rows[2] << 6;
+    if bits & bits.wrapping_sub(1) != 0 {
+        return None;
+    }
+    let turn = |[x, y, z]: [u32; 3], k: u32| [pick([x, y, z], k), pick([y, z, x], k), pick([z, x, y], k)];
+    let of_p = (rows[1] != 0) as u32 + 2 * (rows[2] != 0) as u32;
+    let of_q = (rows[0] | rows[1] | rows[2]) >> 1;
+    Some((turn(p.corners, of_p), turn(q.corners, of_q), bits != 0))
 }
 
 /// Numbers of tests of a lane, with one to spare.
 const TESTS: u32 = 16;
 
-/// Bytes of shared memory of a block: a number of each test that is to be listed.
+/// Bytes of shared memory of a block: pairs that wait, and a number of each test that is to be
+/// listed.
 pub const fn shared_bytes(lanes: u32) -> u32 {
-    4 * MOST * lanes
+    waiting_bytes(lanes) + 4 * MOST * lanes
 }
 
 /// Bits of [`owned`] that are vertices and faces.
@@ -174,62 +161,182 @@ const VERTICES: u32 = 63;
 /// Counts of both kinds in one word: at most 15 a lane, so blocks of up to 1,024 lanes fit 16 bits.
 const EE: u32 = 1 << 16;
 
-/// Vertex/face and edge/edge candidates of each triangle pair.
-pub fn features<R: Real, C: Course<R>, B: Block>(block: &mut B, args: &FeaturesArgs<R>) {
-    let count = args.pairs.listed(block);
-    let time = Horizon::of(block, args.known).time();
-    let (horizon, single) = (R::of(time.into()), [more(args.gap), time]);
-    let map = Meeting::<R, C> { gap: more(args.gap), horizon, single, course: PhantomData };
-    let lanes = block.lanes();
-    let tests = block.shared::<u32>(MOST * lanes);
-    let mut masks = block.slot(0u32);
-    let mut places = block.slot(0u32);
+/// Two triangles of a pair.
+#[derive(Clone, Copy)]
+struct Two {
+    pair: Pair,
+    p: Facet,
+    q: Facet,
+}
+
+impl Two {
+    #[inline(always)]
+    fn of<R: Real, L: Lane>(lane: &L, args: &FeaturesArgs<R>, pair: Pair) -> Self {
+        Two { pair, p: lane.read(args.facets, pair.a), q: lane.read(args.facets, pair.b) }
+    }
+    /// The row of [`Parted`]; `None` if they share more than a corner.
+    #[inline(always)]
+    fn parted<R: Real, C: Course<R>, L: Lane>(
+        &self,
+        lane: &L,
+        args: &FeaturesArgs<R>,
+    ) -> Option<[C::Corner; 7]> {
+        let at = |vertex| C::corner(lane, &args.frames, vertex);
+        let ([a, b, c], [d, e, f], has_common) = turned(&self.p, &self.q)?;
+        let common = C::filled(if has_common { R::ONE } else { R::ZERO });
+        Some([at(a), at(b), at(c), at(d), at(e), at(f), common])
+    }
+    /// The row of [`Meeting`].
+    #[inline(always)]
+    fn meeting<R: Real, C: Course<R>, L: Lane>(
+        &self,
+        lane: &L,
+        args: &FeaturesArgs<R>,
+    ) -> Option<[[C::Corner; 3]; 2]> {
+        let at = |vertex| C::corner(lane, &args.frames, vertex);
+        let corners = |[x, y, z]: [u32; 3]| [at(x), at(y), at(z)];
+        Some([corners(self.p.corners), corners(self.q.corners)])
+    }
+}
+
+/// Vertex/face and edge/edge candidates of each triangle pair. Two filters one after the other, in
+/// the order that leaves less for the second one. With a horizon most pairs have no boxes that meet
+/// before it: directions come second.
+pub fn features<R: Real, C: Course<R>, const HORIZON: bool, B: Block>(block: &mut B, args: &FeaturesArgs<R>) {
+    let (count, lanes) = (args.pairs.listed(block), block.lanes());
+    let later = block.blocks() * lanes;
+    let mut waiting = Waiting::new(block);
+    let mut tests = Tests::<R, C, B>::new(block, args);
     let mut base = block.block() * lanes;
-    let stride = block.blocks() * lanes;
-    while base < count {
+    // One place in the code for what is behind it, or the compiler puts it out of line: so the last
+    // turn has no pairs.
+    loop {
+        let find = |lane: &B::Lane| {
+            let i = base + lane.lane();
+            if i >= count {
+                return None;
+            }
+            let two = Two::of(lane, args, args.pairs.get(lane, i));
+            expect(lane, &args.pairs, i + later, count, |pair| {
+                lane.expect(args.facets, pair.a);
+                lane.expect(args.facets, pair.b);
+            });
+            if owned(&two.p, &two.q) == 0 {
+                return None;
+            }
+            [two.p, two.q]
+                .iter()
+                .flat_map(|facet| facet.corners)
+                .for_each(|vertex| C::expect(lane, &args.frames, vertex));
+            Some(two)
+        };
+        if HORIZON {
+            block.map_rows(
+                &tests.boxes,
+                find,
+                |lane, two| two.meeting::<R, C, _>(lane, args),
+                |lane, result| {
+                    let left = result
+                        .and_then(|(two, mask)| (owned(&two.p, &two.q) & mask != 0).then_some(two.pair));
+                    waiting.set(lane, left);
+                },
+            );
+        } else {
+            block.map_rows(
+                &tests.directions,
+                find,
+                |lane, two| two.parted::<R, C, _>(lane, args),
+                |lane, result| {
+                    let left = result.and_then(|(two, verdict)| (verdict != APART).then_some(two.pair));
+                    waiting.set(lane, left);
+                },
+            );
+        }
+        waiting.add(block);
+        let is_end = base >= count;
+        let (from, some) = waiting.take(block, is_end);
+        if some > 0 {
+            tests.run::<HORIZON>(block, args, &waiting, from, some);
+        }
+        if is_end {
+            break;
+        }
+        base += later;
+    }
+}
+
+/// The 15 tests of the pairs that wait.
+struct Tests<R, C, B: Block> {
+    directions: Parted<R, C>,
+    boxes: Meeting<R, C>,
+    /// Which lane's test each candidate is.
+    listed: Shared<u32>,
+    are_apart: B::Slot<bool>,
+    masks: B::Slot<u32>,
+    places: B::Slot<u32>,
+}
+
+impl<R: Real, C: Course<R>, B: Block> Tests<R, C, B> {
+    #[inline(always)]
+    fn new(block: &mut B, args: &FeaturesArgs<R>) -> Self {
+        let (gap, horizon) = (Gap::of(args.gap), Horizon::of(block, args.known).time());
+        let lanes = block.lanes();
+        Tests {
+            directions: Parted { gap: gap.single, course: PhantomData },
+            boxes: Meeting { gap, horizon, course: PhantomData },
+            listed: block.shared::<u32>(MOST * lanes),
+            are_apart: block.slot(false),
+            masks: block.slot(0),
+            places: block.slot(0),
+        }
+    }
+
+    /// Lists the candidates of `some` of the pairs that wait, from the one at `from`; one a lane.
+    #[inline(always)]
+    fn run<const HORIZON: bool>(
+        &mut self,
+        block: &mut B,
+        args: &FeaturesArgs<R>,
+        waiting: &Waiting<B>,
+        from: u32,
+        some: u32,
+    ) {
+        let (lanes, listed) = (block.lanes(), self.listed);
+        let pair_of = |lane: &B::Lane, i: u32| waiting.get(lane, from + i);
+        let find =
+            |lane: &B::Lane| (lane.lane() < some).then(|| Two::of(lane, args, pair_of(lane, lane.lane())));
+        if HORIZON {
+            block.map_rows(
+                &self.directions,
+                find,
+                |lane, two| two.parted::<R, C, _>(lane, args),
+                |lane, result| *self.are_apart.of(lane) = result.is_some_and(|told| told.1 == APART),
+            );
+        }
         block.map_rows(
-            &map,
-            |lane| {
-                let i = base + lane.lane();
-                if i >= count {
-                    return None;
-                }
-                let pair = args.pairs.get(lane, i);
-                let (p, q) = (lane.read(args.facets, pair.a), lane.read(args.facets, pair.b));
-                [p, q]
-                    .iter()
-                    .flat_map(|facet| facet.corners)
-                    .for_each(|vertex| C::expect(lane, &args.frames, vertex));
-                expect(lane, &args.pairs, i + stride, count, |pair| {
-                    lane.expect(args.facets, pair.a);
-                    lane.expect(args.facets, pair.b);
-                });
-                Some((owned(&p, &q), p.corners, q.corners))
-            },
-            |lane, (_, p, q)| {
-                let at = |vertex| C::corner(lane, &args.frames, vertex);
-                let corners = |[x, y, z]: [u32; 3]| [at(x), at(y), at(z)];
-                Some([corners(p), corners(q)])
-            },
+            &self.boxes,
+            find,
+            |lane, two| two.meeting::<R, C, _>(lane, args),
             |lane, result| {
-                let mask = result.map_or(0, |((owned, ..), meeting)| owned & meeting);
-                *masks.of(lane) = mask;
-                *places.of(lane) = (mask & VERTICES).count_ones() + EE * (mask & !VERTICES).count_ones();
+                let mask = result.map_or(0, |(two, meeting)| owned(&two.p, &two.q) & meeting);
+                let mask = if HORIZON && *self.are_apart.of(lane) { 0 } else { mask };
+                *self.masks.of(lane) = mask;
+                *self.places.of(lane) = (mask & VERTICES).count_ones() + EE * (mask & !VERTICES).count_ones();
                 lane.meet();
             },
         );
-        let total = block.scan(&mut places);
+        let total = block.scan(&mut self.places);
         let (vf, ee) = (total % EE, total / EE);
         let starts = block.reserve_both([args.vf.count(), args.ee.count()], [vf.into(), ee.into()]);
-        // Which lane's test each candidate is: written by few lanes that have many, read by all.
+        // Written by few lanes that have many, read by all.
         block.phase(|lane| {
-            let (mut mask, before) = (*masks.of(lane), *places.of(lane));
+            let (mut mask, before) = (*self.masks.of(lane), *self.places.of(lane));
             let (mut next_vf, mut next_ee) = (before % EE, vf + before / EE);
             while mask != 0 {
                 let k = mask.trailing_zeros();
                 mask &= mask - 1;
                 let next = if k < 6 { &mut next_vf } else { &mut next_ee };
-                lane.put(tests, *next, lane.lane() * TESTS + k);
+                lane.put(listed, *next, lane.lane() * TESTS + k);
                 *next += 1;
             }
             lane.meet();
@@ -237,22 +344,18 @@ pub fn features<R: Real, C: Course<R>, B: Block>(block: &mut B, args: &FeaturesA
         block.phase(|lane| {
             let mut i = lane.lane();
             while i < vf + ee {
-                let test = lane.get(tests, i);
-                let pair = args.pairs.get(lane, base + test / TESTS);
+                let test = lane.get(listed, i);
+                let (pair, k) = (pair_of(lane, test / TESTS), test % TESTS);
                 if i < vf {
-                    args.vf.put(lane, starts[0] + i as u64, vertex_and_face(lane, args, pair, test % TESTS));
+                    args.vf.put(lane, starts[0] + i as u64, vertex_and_face(lane, args, pair, k));
                 } else {
-                    args.ee.put(
-                        lane,
-                        starts[1] + (i - vf) as u64,
-                        two_edges(lane, args, pair, test % TESTS - 6),
-                    );
+                    let place = starts[1] + (i - vf) as u64;
+                    args.ee.put(lane, place, two_edges(lane, args, pair, k - 6));
                 }
                 i += lanes;
             }
             lane.meet();
         });
-        base += stride;
     }
 }
 
@@ -269,16 +372,4 @@ fn two_edges<R: Real, L: Lane>(lane: &L, args: &FeaturesArgs<R>, pair: Pair, tes
     let edge = |of: u32, k: u32| pick(lane.read(args.facets, of).edges, k);
     let (x, y) = (edge(pair.a, test / 3), edge(pair.b, test % 3));
     Pair { a: x.min(y), b: x.max(y) }
-}
-
-/// One of three, without memory.
-#[inline(always)]
-fn pick([x, y, z]: [u32; 3], k: u32) -> u32 {
-    if k == 0 {
-        x
-    } else if k == 1 {
-        y
-    } else {
-        z
-    }
 }

@@ -4,10 +4,10 @@
 //!
 //! | query | steps |
 //! | --- | --- |
-//! | discrete | [`discrete`] |
-//! | continuous, earliest | [`discrete`] at t = 0, [`features`], [`cull`], then a solver |
+//! | discrete | [`discrete`], [`certain`] |
+//! | continuous, earliest | the same at t = 0, [`features`], [`cull`], then a solver |
 //! | near | [`features`], [`near`] |
-//! | distance | [`discrete`], [`mod@nearest`] |
+//! | distance | [`discrete`], [`certain`], [`mod@nearest`] |
 //!
 //! [`discrete`] counts the triangle pairs that share a point at t = 0, unless the query assumes
 //! none. [`features`] turns triangle pairs into vertex/face and edge/edge candidates, each once.
@@ -18,7 +18,9 @@
 //! [`below_precision`] counts contacts that are too large for the tolerance, if any can be.
 
 pub mod below_precision;
+pub mod certain;
 pub mod climb;
+pub mod course;
 pub mod cull;
 pub mod discrete;
 pub mod features;
@@ -27,6 +29,7 @@ pub mod nearest;
 pub mod separate;
 pub mod slice;
 pub mod solve;
+mod waiting;
 
 use crate::abi::{BodyTolerance, Output, Pair, Point, Positions, RungArgs, Span, earliest};
 use crate::exec::{ALONE, Block, Lane, RowMap, Slot};

@@ -1,0 +1,160 @@
+//! # Certain: the triangle pairs that the filter left uncertain → those that share a point
+//! Paper    not in the paper.
+//! Launch   [`wide`] with f32 positions, in f64; then [`exact`] over those that are still
+//!          uncertain, on integers. A lane a pair; a grid of any size strides. A lane a sign if
+//!          there are few pairs.
+//!          [`super::discrete::Still`] at rest, [`super::discrete::Start`] at the start of a step.
+//! Reads    uncertain pairs, faces, positions.
+//! Writes   contacts; `wide` also the pairs that are still uncertain.
+//! Before   pairs = those that the kernel before did not decide. Positions are finite.
+//! After    contacts ∪= {(a, b) in pairs : closed triangles share a point}; with a common vertex,
+//!          beyond it. `wide` leaves some out and lists them.
+//! Room     contacts, uncertain: counted past the end, grown, run again.
+//! Cost     a sign takes `wide` some 60 operations in f64, `exact` thousands on integers.
+
+use super::discrete::{Frame, corners};
+use super::{Entries, append_each, stride};
+use crate::abi::{DiscreteArgs, DiscreteFlags, Pair};
+use crate::exec::{Block, Lane, Slot};
+use crate::math::{Real, Vec3};
+use crate::prim::adjacent::{Shared, meets_beyond_shared};
+use crate::prim::tri_tri::{Certain, SIGNS, Signs, Wide, decided, meets, points_of_sign};
+
+/// Few pairs: so many that a block tests together, and no more blocks.
+const TOGETHER: u32 = 4;
+/// Lanes of one of few pairs: one a sign, and one idle.
+pub const LANES_A_PAIR: u32 = SIGNS.next_power_of_two();
+/// Shared memory of a block: signs.
+pub const SHARED: u32 = 4 * TOGETHER * LANES_A_PAIR;
+/// A sign that is not known; others are one more than they are.
+const UNKNOWN: u32 = 3;
+
+/// Signs in f64, for pairs that f32 left uncertain.
+pub fn wide<F: Frame<f32>, B: Block>(block: &mut B, args: &DiscreteArgs<f32>) {
+    let count = args.pairs.listed(block);
+    if are_few(block, args, count) {
+        return of_few::<f32, F, Wide, B>(block, args, count, |lane, pair, verdict| match verdict {
+            Some(true) => args.contacts.push(lane, pair),
+            Some(false) => {}
+            None => args.uncertain.push(lane, pair),
+        });
+    }
+    let mut verdicts = block.slot((Pair::default(), Some(false)));
+    let mut entries = Entries::new(block);
+    stride(block, count, |block, base| {
+        block.phase(|lane| {
+            let i = base + lane.lane();
+            *verdicts.of(lane) = if i < count {
+                let (pair, [x, y], shared) = given::<f32, F, _>(lane, args, i);
+                let verdict = match shared {
+                    Shared::Nothing => meets::<f32, Wide>(&x, &y),
+                    shared => beyond(x, y, shared),
+                };
+                (pair, verdict)
+            } else {
+                (Pair::default(), Some(false))
+            };
+            lane.meet();
+        });
+        for (verdict, list) in [(Some(true), args.contacts), (None, args.uncertain)] {
+            block.phase(|lane| {
+                let (pair, found) = *verdicts.of(lane);
+                entries.set(lane, (found == verdict).then_some(pair));
+            });
+            entries.append(block, list);
+        }
+    });
+}
+
+/// Tests a pair that shares corners. By value and out of line: such pairs are few, and the others
+/// keep their registers.
+#[inline(never)]
+fn beyond(p: [Vec3<f32>; 3], q: [Vec3<f32>; 3], shared: Shared) -> Option<bool> {
+    meets_beyond_shared::<f32, Wide>(&p, &q, shared)
+}
+
+/// Exact signs, for the pairs that the filters left uncertain: some thousand operations each.
+pub fn exact<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &DiscreteArgs<R>) {
+    let count = args.pairs.listed(block);
+    // `Certain` always answers; were it not to, the pair stays.
+    if are_few(block, args, count) {
+        return of_few::<R, F, Certain, B>(block, args, count, |lane, pair, verdict| {
+            let verdict = verdict.or_else(|| {
+                let [p, q] = faces(lane, args, pair).map(|face| corners::<R, F, _>(lane, args, face));
+                meets::<R, Certain>(&p, &q)
+            });
+            if verdict != Some(false) {
+                args.contacts.push(lane, pair);
+            }
+        });
+    }
+    append_each(block, count, args.contacts, |lane, i| {
+        let (pair, [p, q], shared) = given::<R, F, _>(lane, args, i);
+        (meets_beyond_shared::<R, Certain>(&p, &q, shared) != Some(false)).then_some(pair)
+    });
+}
+
+/// Whether there are so few pairs that each lane takes a sign. None of them may share vertices.
+fn are_few<R: Real, B: Block>(block: &B, args: &DiscreteArgs<R>, count: u32) -> bool {
+    !args.flags.has(DiscreteFlags::KEEP_ADJACENT) && count <= block.blocks() * TOGETHER
+}
+
+/// Few pairs: a lane computes one sign. One lane of each pair takes the verdict: none if a sign is
+/// not known, or if the triangles are coplanar.
+#[inline(always)]
+fn of_few<R: Real, F: Frame<R>, S: Signs<R>, B: Block>(
+    block: &mut B,
+    args: &DiscreteArgs<R>,
+    count: u32,
+    take: impl Fn(&B::Lane, Pair, Option<bool>),
+) {
+    let lanes = block.lanes();
+    let signs = block.shared::<u32>(TOGETHER * LANES_A_PAIR);
+    let base = (block.block() * TOGETHER).min(count);
+    let some = TOGETHER.min(count - base);
+    block.phase(|lane| {
+        let mut i = lane.lane();
+        while i < some * LANES_A_PAIR {
+            let which = i % LANES_A_PAIR;
+            if which < SIGNS {
+                let [p, q] = faces(lane, args, args.pairs.get(lane, base + i / LANES_A_PAIR));
+                let [a, b, c, d] = points_of_sign(p, q, which);
+                let at = |vertex| F::at(lane, &args.frames, vertex);
+                let sign = S::orient3d(at(a), at(b), at(c), at(d));
+                lane.put(signs, i, sign.map_or(UNKNOWN, |sign| (sign + 1) as u32));
+            }
+            i += lanes;
+        }
+        lane.meet();
+    });
+    block.phase(|lane| {
+        let mut i = lane.lane();
+        while i < some {
+            let sign = |k: usize| lane.get(signs, i * LANES_A_PAIR + k as u32);
+            let all: [u32; SIGNS as usize] = core::array::from_fn(sign);
+            let verdict =
+                if all.contains(&UNKNOWN) { None } else { decided(&all.map(|sign| sign as i32 - 1)) };
+            take(lane, args.pairs.get(lane, base + i), verdict);
+            i += lanes;
+        }
+        lane.meet();
+    });
+}
+
+/// Vertex indices of two triangles.
+#[inline(always)]
+fn faces<R: Real, L: Lane>(lane: &L, args: &DiscreteArgs<R>, pair: Pair) -> [[u32; 3]; 2] {
+    [lane.read(args.faces, pair.a), lane.read(args.faces, pair.b)]
+}
+
+/// A pair, its corners, and their shared vertices.
+#[inline(always)]
+fn given<R: Real, F: Frame<R>, L: Lane>(
+    lane: &L,
+    args: &DiscreteArgs<R>,
+    i: u32,
+) -> (Pair, [[Vec3<R>; 3]; 2], Shared) {
+    let pair = args.pairs.get(lane, i);
+    let [p, q] = faces(lane, args, pair);
+    (pair, [corners::<R, F, _>(lane, args, p), corners::<R, F, _>(lane, args, q)], Shared::by_index(p, q))
+}
