@@ -21,7 +21,8 @@ named! {
 }
 
 /// Milliseconds of each stage of a frame, by the device's clock, and of the whole call. `construct`
-/// is that of the last build.
+/// is that of the last build. On a GPU `fit`, `refit`, `traverse` and `narrow` are 0 unless
+/// [stages are timed](crate::research::DetectorExt::time_stages).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Stages {
@@ -71,6 +72,13 @@ impl Stages {
             launch: of(|s| s.launch),
             wall: of(|s| s.wall),
         }
+    }
+
+    /// These times, with the stages of other frames, whose marks make them longer.
+    #[must_use]
+    pub fn with_stages(self, of: &Stages) -> Stages {
+        let Stages { fit, refit, traverse, balance, narrow, .. } = *of;
+        Stages { fit, refit, traverse, balance, narrow, ..self }
     }
 
     /// The milliseconds of one stage.

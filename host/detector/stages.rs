@@ -9,6 +9,11 @@ use crate::query::Query;
 use std::time::Instant;
 
 impl Detector {
+    /// Makes frames on this device mark the time of each stage, or not.
+    pub(crate) fn time_stages(&mut self, are_timed: bool) {
+        self.device.time_stages(are_timed);
+    }
+
     /// Runs one stage of a query's frame `times` times on the device, for profilers and for figures
     /// of one stage. Returns the milliseconds of each run. Inputs of the stage are computed first,
     /// once, if they are missing. [`Stage::Refit`] needs the leaves' volumes; [`Stage::Traverse`],

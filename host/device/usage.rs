@@ -2,7 +2,7 @@
 
 use super::held::is_held;
 use crate::error::Error;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Counts of a device. Each number is independent, so no order between them is needed.
 pub struct Usage {
@@ -26,6 +26,8 @@ pub struct Usage {
     pub most: AtomicU64,
     /// Maximum bytes of the rows of one answer on the host.
     pub answers: AtomicU64,
+    /// Whether frames of a GPU mark the time of each stage.
+    pub times_stages: AtomicBool,
 }
 
 impl Usage {
@@ -34,7 +36,20 @@ impl Usage {
         let [launches, bytes, peak, allocations, waits, replays, uploaded, views] =
             [const { AtomicU64::new(0) }; 8];
         let [most, answers] = [const { AtomicU64::new(u64::MAX) }; 2];
-        Usage { launches, bytes, peak, allocations, waits, replays, uploaded, views, most, answers }
+        let times_stages = AtomicBool::new(false);
+        Usage {
+            launches,
+            bytes,
+            peak,
+            allocations,
+            waits,
+            replays,
+            uploaded,
+            views,
+            most,
+            answers,
+            times_stages,
+        }
     }
 
     /// Checks that this thread may do more than launch now.

@@ -29,7 +29,7 @@ impl DerefMut for OneQuery {
 }
 
 impl OneQuery {
-    /// Makes a detector, allocates the query's memory and builds tiles or trees.
+    /// Makes a detector, allocates the query's memory and builds tiles or trees. Stages are timed.
     ///
     /// # Errors
     /// Errors of the detector, and of the query's numbers.
@@ -38,7 +38,13 @@ impl OneQuery {
         query.check()?;
         let mut detector = Detector::new(device, scene)?;
         detector.begin(&query)?;
+        detector.time_stages(true);
         Ok(OneQuery { detector, query })
+    }
+
+    /// As [`DetectorExt::time_stages`]; stages are timed at first.
+    pub fn time_stages(&mut self, are_timed: bool) {
+        self.detector.time_stages(are_timed);
     }
 
     /// The query.

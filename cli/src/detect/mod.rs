@@ -174,9 +174,10 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
     let mut detector = during("building", || OneQuery::new(device.clone(), scene, query))?;
     let research = &args.research;
     let often = if research.only.is_some() { 1 } else { research.repeat };
-    let (contacts, runs) = during("detecting", || repeated(&mut detector, often))?;
+    let is_gpu = device.is_gpu();
+    let (contacts, times) = during("detecting", || repeated(&mut detector, often, is_gpu))?;
     let mut summary = detector.summary(&contacts);
-    summary.ms = median(&runs);
+    summary.ms = times;
     if let Some(stage) = research.only {
         let times = during("repeating a stage", || detector.repeat_stage(stage, research.repeat))?;
         *summary.ms.of_mut(stage) = middle(times);
@@ -228,29 +229,43 @@ pub fn geometry(
     if is_wanted && has_any { detector.geometry(found).map(Some) } else { Ok(None) }
 }
 
-/// The answer, and the times of each run; of several runs the first only warms up.
-fn repeated(detector: &mut OneQuery, repeat: u32) -> Result<(Contacts, Vec<Stages>), Error> {
+/// The answer, and the times: of several runs each stage's median. The first run only warms up.
+/// Frames run without marks between their stages, then some with them, for the times of stages.
+fn repeated(detector: &mut OneQuery, repeat: u32, is_gpu: bool) -> Result<(Contacts, Stages), Error> {
     let keeps_front = matches!(detector.query().search().traversal, Some(Traversal::Front(_)));
-    let mut contacts = detector.detect()?;
-    let mut runs = vec![contacts.stats.stages];
-    if repeat > 1 {
-        runs.clear();
-        for _ in 0..repeat {
+    let contacts = detector.detect()?;
+    if repeat <= 1 {
+        let times = contacts.stats.stages;
+        return Ok((contacts, times));
+    }
+    let mut run = |are_timed: bool, frames: u32| -> Result<(Contacts, Stages), Error> {
+        detector.time_stages(are_timed);
+        let (mut last, mut runs) = (None, Vec::new());
+        // The first two frames are launched and recorded; later ones are replayed.
+        for frame in 0..frames + 2 {
             // A rebuilt tree would lose the front.
             if !keeps_front {
                 detector.rebuild()?;
             }
-            contacts = detector.detect()?;
-            runs.push(contacts.stats.stages);
+            let contacts = detector.detect()?;
+            if frame >= 2 {
+                runs.push(contacts.stats.stages);
+            }
+            last = Some(contacts);
         }
+        let last = last.ok_or_else(|| Error::Bug { what: "no frame ran".into() })?;
+        Ok((last, Stages::each(|stage| middle(runs.iter().map(stage).collect()))))
+    };
+    let (contacts, times) = run(false, repeat)?;
+    if !is_gpu {
+        return Ok((contacts, times));
     }
-    Ok((contacts, runs))
+    let (_, stages) = run(true, repeat.min(MARKED))?;
+    Ok((contacts, times.with_stages(&stages)))
 }
 
-/// Each stage's median.
-fn median(runs: &[Stages]) -> Stages {
-    Stages::each(|stage| middle(runs.iter().map(stage).collect()))
-}
+/// Frames at most that are run again for the times of their stages.
+const MARKED: u32 = 10;
 
 /// The median; of an even number the upper of the two in the middle, of none 0.
 pub fn middle(mut times: Vec<f64>) -> f64 {

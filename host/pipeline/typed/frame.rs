@@ -96,22 +96,24 @@ impl<R: Precision> QueryMemory<R> {
     }
 
     fn stages(&mut self, scene: &mut SceneMemory<R>, fits: bool, marks: &mut Marks) -> Result<(), Error> {
-        let mut pass = |mark: Mark| marks.pass(mark as usize);
+        let times_stages = scene.device.times_stages();
+        let mut pass =
+            |mark: Mark, is_wanted: bool| if is_wanted { marks.pass(mark as usize) } else { Ok(()) };
         if fits {
-            pass(Mark::Begun)?;
+            pass(Mark::Begun, true)?;
             self.run(scene, Stage::Fit)?;
-            pass(Mark::Fitted)?;
+            pass(Mark::Fitted, times_stages)?;
             self.run(scene, Stage::Refit)?;
-            pass(Mark::Refitted)?;
+            pass(Mark::Refitted, times_stages)?;
         }
         self.counters.clear()?;
-        pass(Mark::Walks)?;
+        pass(Mark::Walks, times_stages)?;
         self.run(scene, Stage::Traverse)?;
-        pass(Mark::Walked)?;
+        pass(Mark::Walked, times_stages)?;
         self.run(scene, Stage::Narrow)?;
-        pass(Mark::Found)?;
+        pass(Mark::Found, true)?;
         self.run(scene, Stage::Order)?;
-        pass(Mark::Ordered)
+        pass(Mark::Ordered, true)
     }
 
     /// Returns the times of the stages, from their marks; waits for them.
@@ -122,14 +124,16 @@ impl<R: Precision> QueryMemory<R> {
             place += start.to(&end)?;
         }
         let ms = |from: Mark, to: Mark| self.replay.ms(from as usize, to as usize);
+        let times_stages = scene.device.times_stages();
+        let of = |from: Mark, to: Mark| if times_stages { ms(from, to) } else { Ok(0.0) };
         Ok(Stages {
             place,
             construct: 0.0,
-            fit: ms(Mark::Begun, Mark::Fitted)?,
-            refit: ms(Mark::Fitted, Mark::Refitted)?,
-            traverse: ms(Mark::Walks, Mark::Walked)? - balance,
+            fit: of(Mark::Begun, Mark::Fitted)?,
+            refit: of(Mark::Fitted, Mark::Refitted)?,
+            traverse: (of(Mark::Walks, Mark::Walked)? - balance).max(0.0),
             balance,
-            narrow: ms(Mark::Walked, Mark::Found)?,
+            narrow: of(Mark::Walked, Mark::Found)?,
             order: if self.narrow.ordered().is_some() { ms(Mark::Found, Mark::Ordered)? } else { 0.0 },
             total: ms(Mark::Begun, Mark::Found)?,
             launch: if scene.device.is_gpu() { self.launch_ms } else { 0.0 },

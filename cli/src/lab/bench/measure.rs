@@ -112,12 +112,25 @@ pub fn measure(
         detector.frame(&inputs)?;
     }
     let (mut all, mut hashes, mut last, before) = (Vec::new(), Vec::new(), [0; 2], detector.reruns());
-    for _ in 0..frames {
+    // Frames without marks between stages; then as many with them, for the times of stages.
+    detector.time_stages(!device.is_gpu());
+    for _ in 0..WARM_UP + frames {
         detector.rebuild()?;
         let found = detector.frame(&inputs)?;
         all.push(found.stats.stages);
         hashes.push(found.hash());
         last = [found.stats.candidates, found.len() as u64];
+    }
+    all.drain(..WARM_UP as usize);
+    if device.is_gpu() {
+        detector.time_stages(true);
+        for frame in 0..WARM_UP + frames {
+            detector.rebuild()?;
+            let marked = detector.frame(&inputs)?.stats.stages;
+            if let Some(at) = frame.checked_sub(WARM_UP) {
+                all[at as usize] = all[at as usize].with_stages(&marked);
+            }
+        }
     }
     let hash = one(&hashes, &called(case, question.name()))?;
     Ok(Measured {
