@@ -5,7 +5,7 @@
 //! the kernels are compiled, if this machine has a device compiler (kernels/ptx.sh); if it has
 //! none, the build stops.
 //!
-//! Machine code is embedded beside it from the file that `NEARMISS_CUBINS` names (.ci/cubins.sh
+//! Machine code is embedded too, from the file that `NEARMISS_CUBINS` names (.ci/cubins.sh
 //! makes it). Code of another PTX stops the build.
 //!
 //! The library gets `NEARMISS_STAMP` (16 hex digits) from the environment and the text from

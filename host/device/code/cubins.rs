@@ -1,5 +1,6 @@
-//! Machine code of the kernels, beside the PTX. A release has a file of it, made from the PTX by
-//! `.ci/cubins.sh`; a build from source has none. build.rs reads it by these lines too.
+//! Machine code of the kernels, in addition to the PTX. A release has a file of it, which
+//! `.ci/cubins.sh` makes from the PTX; a build from source has none. build.rs reads the file by
+//! these lines too.
 //!
 //! The file is a text that ends with an empty line, then one zstd frame after the other:
 //!
