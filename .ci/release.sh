@@ -11,7 +11,7 @@
 #   these.
 # - Zig's linker stands for old glibcs and for the other machine; it and maturin come from PyPI by name. The GPU's kernels are committed.
 # - Wheels and archives hold the kernels' machine code beside the PTX (.ci/cubins.sh). Crates do not: crates.io takes 10 MB.
-#   What NVIDIA's assembler makes for an architecture is judged before it is packed (.ci/ptxas.sh).
+#   Each kernel's code is judged before it is packed (.ci/lanes.py).
 # - What is packed has run: the wheels in empty environments with the READMEs' lines, the C examples, the program, whose answers are the same
 #   bytes for both machines. aarch64 runs under QEMU (.ci/aarch64.sh).
 # - The public interface is compared with that of the newest tag `v*` by cargo-semver-checks; where there is no tag there is nothing to compare.
@@ -72,9 +72,7 @@ cp "$work"/package/package/*.crate "$out/crates/"
 cargo test --locked -q --test architecture package -- --include-ignored
 
 echo "=== machine code of the kernels"
-archs=(sm_80 sm_86 sm_89 sm_90 sm_100 sm_120)
-.ci/ptxas.sh kernels/nearmiss.ptx.zst "${archs[@]}"
-.ci/cubins.sh "$work/nearmiss.cubins" "${archs[@]}"
+.ci/cubins.sh "$work/nearmiss.cubins"
 export NEARMISS_CUBINS=$work/nearmiss.cubins
 
 echo "=== wheels"
