@@ -4,8 +4,17 @@
 //! The PTX in the kernels' package is used if it has the stamp of the kernels' sources. Otherwise
 //! the kernels are compiled, if this machine has a device compiler (kernels/ptx.sh); if it has
 //! none, the build stops.
+//!
+//! Machine code is embedded too, from the file that `NEARMISS_CUBINS` names (.ci/cubins.sh
+//! makes it). Code of another PTX stops the build.
+//!
 //! The library gets `NEARMISS_STAMP` (16 hex digits) from the environment and the text from
 //! `OUT_DIR`.
+
+#[cfg(feature = "cuda")]
+#[allow(dead_code, reason = "the library uses the rest")]
+#[path = "host/device/code/cubins.rs"]
+mod cubins;
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
@@ -27,6 +36,7 @@ fn look_for_test_data() {
 
 #[cfg(feature = "cuda")]
 mod ptx {
+    use super::cubins::Cubins;
     use sha2::{Digest, Sha256};
     use std::io::{BufRead, BufReader};
     use std::path::{Path, PathBuf};
@@ -34,6 +44,7 @@ mod ptx {
     use std::{env, fs};
 
     const PTX: &str = "nearmiss.ptx.zst";
+    const CUBINS: &str = "NEARMISS_CUBINS";
 
     pub fn embed() {
         let folder = |name| PathBuf::from(env::var_os(name).unwrap_or_else(|| panic!("cargo sets {name}")));
@@ -54,6 +65,26 @@ mod ptx {
             compile(&kernels, &out, &text, &stamp);
         }
         println!("cargo::rustc-env=NEARMISS_STAMP={stamp}");
+        println!("cargo::rerun-if-env-changed={CUBINS}");
+        fs::write(out.join("nearmiss.cubins"), machine_code(&text)).expect("OUT_DIR takes machine code");
+    }
+
+    /// The file of machine code that the environment names; empty if it names none.
+    fn machine_code(ptx: &Path) -> Vec<u8> {
+        let Some(name) = env::var_os(CUBINS).filter(|name| !name.is_empty()) else { return Vec::new() };
+        println!("cargo::rerun-if-changed={}", Path::new(&name).display());
+        let digest = |bytes: &[u8]| hex(&Sha256::digest(bytes));
+        let file = fs::read(&name).map_err(|error| error.to_string());
+        let whole = file.and_then(|file| {
+            let ptx = digest(&fs::read(ptx).map_err(|error| error.to_string())?);
+            Cubins::new(&file)?.matches(&ptx, digest)?;
+            Ok(file)
+        });
+        whole.unwrap_or_else(|why| {
+            eprintln!("the machine code in {} cannot be used: {why}.", Path::new(&name).display());
+            eprintln!("Make it again by .ci/cubins.sh, or unset {CUBINS}.");
+            std::process::exit(1)
+        })
     }
 
     /// Whether the first line of a compressed text contains the stamp.

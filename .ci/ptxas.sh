@@ -20,38 +20,15 @@ shift
 archs=("$@")
 [ ${#archs[@]} -gt 0 ] || archs=(sm_80 sm_90 sm_100)
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-# The last of CUDA 12 and the newest: `python3 -m pip index versions nvidia-cuda-nvcc` lists newer ones.
-packages=(nvidia-cuda-nvcc-cu12==12.9.86 nvidia-cuda-nvcc==13.5.37)
-! $newest || packages=("${packages[-1]}")
-reader=nvidia-cuda-nvdisasm==13.5.37
-cache=${XDG_CACHE_HOME:-$HOME/.cache}/nearmiss/ptxas
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+. "$here/nvidia.sh"
+packages=("$nvcc_12" "$nvcc_newest")
+! $newest || packages=("${packages[-1]}")
 if [[ $text == *.zst ]]; then
     zstd -dq "$text" -o "$work/text.ptx"
     text=$work/text.ptx
 fi
-
-# fetch PACKAGE PROGRAM: its path in the cache, or nothing.
-fetch() {
-    local program=$cache/$1/$2
-    if [ ! -x "$program" ]; then
-        rm -rf "$work/wheel"
-        python3 -m pip download --quiet --no-deps --only-binary=:all: --dest "$work/wheel" "$1" >&2 || return 1
-        python3 -m zipfile -e "$work"/wheel/*.whl "$work/wheel/all" || return 1
-        mkdir -p "$cache/$1" && cp "$work"/wheel/all/nvidia/*/bin/"$2" "$program.part" && chmod +x "$program.part" &&
-            mv "$program.part" "$program" || return 1
-    fi
-    echo "$program"
-}
-# installed PROGRAM: a toolkit's.
-installed() {
-    local candidate
-    for candidate in "$(command -v "$1" || true)" "/usr/local/cuda/bin/$1"; do
-        [ -x "$candidate" ] && echo "$candidate" && return
-    done
-    return 1
-}
 
 assemblers=()
 for package in "${packages[@]}"; do
@@ -61,7 +38,7 @@ if [ ${#assemblers[@]} = 0 ]; then
     if [ -x "${PTXAS:-}" ]; then found=$PTXAS; else found=$(installed ptxas) || found=; fi
     [ -z "$found" ] || assemblers=("$found")
 fi
-nvdisasm=$(fetch "$reader" nvdisasm || installed nvdisasm) || nvdisasm=
+nvdisasm=$(fetch "$nvdisasm_newest" nvdisasm || installed nvdisasm) || nvdisasm=
 if [ ${#assemblers[@]} = 0 ] || [ -z "$nvdisasm" ]; then
     echo "ptxas.sh: no ptxas or no nvdisasm: install a CUDA toolkit, or python3 with pip" >&2
     exit 77

@@ -10,6 +10,8 @@
 # - A release is of a clean tree whose changelog has a heading with the version, and of packages without advisories. `--rehearse` needs none of
 #   these.
 # - Zig's linker stands for old glibcs and for the other machine; it and maturin come from PyPI by name. The GPU's kernels are committed.
+# - Wheels and archives hold the kernels' machine code beside the PTX (.ci/cubins.sh). Crates do not: crates.io takes 10 MB.
+#   Each kernel's code is judged before it is packed (.ci/lanes.py).
 # - Packed files have run: the wheels in empty environments with the READMEs' lines, the C examples, the program, whose answers are the same
 #   bytes for both machines. aarch64 runs under QEMU (.ci/aarch64.sh).
 # - The public interface is compared with that of the newest tag `v*` by cargo-semver-checks; where there is no tag there is nothing to compare.
@@ -68,6 +70,10 @@ dirty=()
 cargo package --locked --no-verify "${dirty[@]}" "${packages[@]}" --target-dir "$work/package"
 cp "$work"/package/package/*.crate "$out/crates/"
 cargo test --locked -q --test architecture package -- --include-ignored
+
+echo "=== machine code of the kernels"
+.ci/cubins.sh "$work/nearmiss.cubins"
+export NEARMISS_CUBINS=$work/nearmiss.cubins
 
 echo "=== wheels"
 for target in $intel $arm; do

@@ -2,14 +2,13 @@
 
 mod answers;
 mod buffer;
+mod code;
 #[cfg(feature = "cuda")]
 mod cuda;
 mod held;
 mod interrupt;
 mod ledger;
 mod marks;
-#[cfg(any(feature = "cuda", test))]
-mod ptx;
 mod replay;
 mod usage;
 mod view;

@@ -1,4 +1,5 @@
-//! The GPU: the committed PTX as text, which needs none, and a simulator, which does.
+//! The GPU: the committed PTX as text and machine code, which need none, and a simulator, which does.
 
+mod cubins;
 mod foreign;
 mod ptx;

@@ -91,6 +91,7 @@ fn a_plan_is_what_would_run() {
         "300 triangles, 900 vertices, positions in f32, two frames",
         "query           continuous, of one body with itself\n",
         "CPU, 2 threads (cpu)",
+        "kernels         Rust, compiled for the CPU\n",
         "broad phase     tiles: the default of this machine\n",
         "bounding volume linear\n",
         "certified: no contact is missed",

@@ -1,6 +1,6 @@
-//! An NVIDIA GPU, through its driver. The kernels' PTX is embedded; the driver compiles it for the
-//! GPU.
+//! An NVIDIA GPU, through its driver. The kernels are embedded, as PTX and perhaps as machine code.
 
+mod code;
 mod context;
 mod driver;
 mod graph;
@@ -14,12 +14,12 @@ pub use graph::Graph;
 pub use memory::Memory;
 pub use staging::Known;
 
-use super::ptx::{Parts, decompressed};
 use super::replay::{Act, Listing};
 use crate::error::Error;
+use code::Code;
 use context::{Bound, Context, Gpu};
 use driver::{Refusal, refused};
-use module::{Function, Module};
+use module::Function;
 use nearmiss_kernels::entry::Entry as Kernel;
 use staging::Staging;
 use std::collections::HashMap;
@@ -29,8 +29,6 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use stream::Stream;
 use types::{CUcontext, CUstream};
 
-/// The kernels' PTX, found or compiled by build.rs.
-const PTX: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/nearmiss.ptx.zst"));
 /// The stamp of the sources of this program.
 const STAMP: &str = env!("NEARMISS_STAMP");
 /// The oldest GPU that the PTX supports: compute capability 8.0.
@@ -47,7 +45,7 @@ pub struct Cuda {
     staging: Mutex<Staging>,
     /// Counts changes of the GPU's memory: bytes that were read ahead are valid until the next one.
     epoch: AtomicU64,
-    parts: Parts,
+    code: Code,
     functions: Mutex<HashMap<&'static str, Function>>,
     stream: Stream,
     /// The stream for recording graphs, one at a time. Nothing else uses it meanwhile.
@@ -74,6 +72,8 @@ fn locked<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
 impl Cuda {
     /// The GPU with that number.
     pub fn new(ordinal: u32) -> Result<Self, Error> {
+        driver::driver()?;
+        code::start();
         let gpu = Gpu::new(ordinal)?;
         let context = gpu.context()?;
         let stream = Stream::new(&context).map_err(refused("making a stream"))?;
@@ -110,13 +110,10 @@ impl Cuda {
         }
         let processors = gpu.read(types::CU_DEVICE_ATTRIBUTE_MULTIPROCESSOR_COUNT)? as u32;
         let lanes = gpu.read(types::CU_DEVICE_ATTRIBUTE_MAX_THREADS_PER_MULTIPROCESSOR)? as u32;
-        let text =
-            decompressed(PTX).map_err(|why| Error::Bug { what: format!("the embedded PTX: {why}") })?;
-        let parts = Parts::new(&text);
+        let code = Code::new(capability)?;
         let bound = context.bind().map_err(refused(BINDING))?;
-        let common =
-            Module::new(&context, &bound, parts.common(), None).map_err(refused("loading the kernels"))?;
-        is_ours(common.global(&bound, c"NEARMISS_STAMP").map_err(refused("reading the kernels' stamp"))?)?;
+        let stamped = code.stamped(&context, &bound)?;
+        is_ours(stamped.global(&bound, c"NEARMISS_STAMP").map_err(refused("reading the kernels' stamp"))?)?;
         let staging = Staging::new(&context, &bound)?;
         let recorder = Stream::new(&context).map_err(refused("making a stream"))?;
         drop(bound);
@@ -126,7 +123,7 @@ impl Cuda {
             resident_lanes: processors * lanes,
             staging: Mutex::new(staging),
             epoch: AtomicU64::new(0),
-            parts,
+            code,
             functions: Mutex::default(),
             stream,
             recorder: Mutex::new(recorder),
@@ -142,6 +139,11 @@ impl Cuda {
     /// The driver's name of the GPU.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// The form of the kernels' code: see [`Code::form`].
+    pub fn code(&self) -> String {
+        self.code.form()
     }
 
     /// The GPU's number.
@@ -329,11 +331,7 @@ impl Cuda {
         let function = match functions.entry(E::NAME) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(new) => {
-                let text = self.parts.module(E::NAME);
-                let text =
-                    text.ok_or_else(|| Error::Bug { what: format!("no kernel {} in the PTX", E::NAME) })?;
-                let module =
-                    Module::new(&self.context, &gpu, &text, E::REGISTERS).map_err(refused(E::NAME))?;
+                let module = self.code.module::<E>(&self.context, &gpu)?;
                 new.insert(module.function(&gpu, E::NAME).map_err(refused(E::NAME))?)
             }
         };

@@ -1,4 +1,4 @@
-//! Kernels that the driver has compiled.
+//! Kernels that the driver has loaded.
 
 use super::context::{Bound, Context};
 use super::driver::{Refusal, answer};
@@ -8,7 +8,7 @@ use std::ffi::{CStr, CString, c_int, c_void};
 use std::ptr::null_mut;
 use std::sync::Arc;
 
-/// PTX that the driver has compiled for the GPU.
+/// Kernels that the driver has compiled for the GPU, or whose machine code it has loaded.
 pub struct Module {
     context: Arc<Context>,
     handle: CUmodule,
@@ -36,13 +36,37 @@ impl Module {
             options.push(types::CU_JIT_MAX_REGISTERS);
             values.push(std::ptr::without_provenance_mut(registers as usize));
         }
+        // SAFETY: the text ends with zero.
+        unsafe { Self::load(context, gpu, ptx.as_bytes_with_nul(), &mut options, &mut values) }
+    }
+
+    /// Loads machine code of the assembler. The driver refuses code for another architecture.
+    pub fn of_machine_code(context: &Arc<Context>, gpu: &Bound, code: &[u8]) -> Result<Module, Refusal> {
+        if !is_machine_code(code) {
+            return Err(Refusal(types::CUDA_ERROR_INVALID_VALUE));
+        }
+        // SAFETY: the file is whole, from its first byte to the length that its header implies:
+        // build.rs compared the digest of what the assembler wrote.
+        unsafe { Self::load(context, gpu, code, &mut [], &mut []) }
+    }
+
+    /// # Safety
+    /// The image is a text that ends with zero, or a whole file of machine code. There is a value
+    /// for each option.
+    unsafe fn load(
+        context: &Arc<Context>,
+        gpu: &Bound,
+        image: &[u8],
+        options: &mut [types::CUjit_option],
+        values: &mut [*mut c_void],
+    ) -> Result<Module, Refusal> {
         let mut handle = null_mut();
-        // SAFETY: the text ends with zero. There is a value for each option, a number in place of a
-        // pointer. The driver writes one handle, which is unloaded once.
+        // SAFETY: the caller's promise; a value is a number in place of a pointer. The driver
+        // writes one handle, which is unloaded once.
         answer(unsafe {
             (gpu.cuModuleLoadDataEx)(
                 &mut handle,
-                ptx.as_ptr().cast(),
+                image.as_ptr().cast(),
                 options.len() as u32,
                 options.as_mut_ptr(),
                 values.as_mut_ptr(),
@@ -72,6 +96,11 @@ impl Module {
         answer(unsafe { (gpu.cuMemcpyDtoH_v2)((&raw mut value).cast(), addr, bytes) })?;
         Ok(value)
     }
+}
+
+/// Whether this begins as machine code does: an ELF file of 64 bits for CUDA (`EM_CUDA`, 190).
+fn is_machine_code(code: &[u8]) -> bool {
+    code.len() > 64 && code.starts_with(b"\x7fELF\x02\x01") && code[18..20] == [190, 0]
 }
 
 /// A text that ends with zero. The driver accepts no text with a zero inside.

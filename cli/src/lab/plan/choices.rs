@@ -30,6 +30,7 @@ pub fn text(detector: &mut OneQuery, device: &Device) -> String {
     };
     line("query", format!("{}, {pairs}", query.kind()));
     line("machine", format!("{} ({})", device.name(), device.backend()));
+    line("kernels", device.code());
     let swept = !query.kind().is_at_rest() && query.volume() != BoundingVolume::Linear;
     line("bounding volume", format!("{}{}", query.volume().name(), if swept { ", swept" } else { "" }));
     let broad = query.broad_phase_on(device.is_gpu());

@@ -4,17 +4,16 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Read;
 
-/// Decompresses a PTX text that is packed by zstd.
+/// Decompresses what is packed by zstd: PTX or machine code.
 ///
 /// # Errors
-/// The reason why it is not one.
-#[cfg(any(feature = "cuda", test))]
-pub fn decompressed(mut compressed: &[u8]) -> Result<String, String> {
-    let mut text = String::new();
+/// The reason why it is not packed so, or not whole.
+pub fn unpacked(mut packed: &[u8]) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
     let mut decoder =
-        ruzstd::decoding::StreamingDecoder::new(&mut compressed).map_err(|error| error.to_string())?;
-    decoder.read_to_string(&mut text).map_err(|error| error.to_string())?;
-    Ok(text)
+        ruzstd::decoding::StreamingDecoder::new(&mut packed).map_err(|error| error.to_string())?;
+    decoder.read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+    Ok(bytes)
 }
 
 /// PTX in parts: the common head, functions, kernels.
@@ -153,16 +152,16 @@ mod tests {
 
     #[test]
     fn a_damaged_text_is_an_error() {
-        let whole = include_bytes!("../../kernels/nearmiss.ptx.zst");
+        let whole = include_bytes!("../../../kernels/nearmiss.ptx.zst");
         for damaged in [&whole[..0], &whole[1..], &whole[..whole.len() / 2]] {
-            assert!(decompressed(damaged).is_err());
+            assert!(unpacked(damaged).is_err());
         }
     }
 
     #[test]
     fn the_committed_text_has_every_kernel_of_the_table() {
-        let text = decompressed(include_bytes!("../../kernels/nearmiss.ptx.zst")).expect("a text");
-        let parts = Parts::new(&text);
+        let text = unpacked(include_bytes!("../../../kernels/nearmiss.ptx.zst")).expect("packed");
+        let parts = Parts::new(std::str::from_utf8(&text).expect("a text"));
         for (name, _) in nearmiss_kernels::entry::TABLE {
             let module = parts.module(name).unwrap_or_else(|| panic!("{name} is missing"));
             assert_eq!(module.matches("\n.visible .entry ").count(), 1, "{name}");
