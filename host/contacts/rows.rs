@@ -1,7 +1,6 @@
 //! Rows of an answer: the host's own, or those that a GPU has written in their final form.
 
 use super::{Closest, Contact, Kind, NearPair, Status, TrianglePair};
-use crate::device::Kept;
 use bytemuck::Pod;
 use nearmiss_kernels::abi::rows::{ContactRow, NearRow, PairRow, code};
 use std::fmt;
@@ -20,8 +19,11 @@ pub struct RowList<T> {
     /// The host's own; empty if the device has written the rows.
     own: Arc<Vec<T>>,
     /// Whole rows, as [`Row::Written`]. Only [`RowList::written`] makes them.
-    kept: Option<Arc<Kept>>,
+    kept: Option<Arc<Bytes>>,
 }
+
+/// Memory that the device has copied rows into.
+type Bytes = dyn AsRef<[u8]> + Send + Sync;
 
 /// A row that the device writes.
 ///
@@ -96,14 +98,15 @@ impl<T> RowList<T> {
     /// Returns the rows that `order_rank` wrote. Builds with debug assertions check every choice.
     ///
     /// # Safety
-    /// The bytes are rows that [`Named::row`](nearmiss_kernels::abi::Named::row) made, or zeros.
-    pub(crate) unsafe fn written(kept: Kept) -> RowList<T>
+    /// The bytes are rows that [`Named::row`](nearmiss_kernels::abi::Named::row) made, or zeros. They
+    /// are aligned to 8, and are always the same.
+    pub(crate) unsafe fn written(kept: Arc<Bytes>) -> RowList<T>
     where
         T: Row,
     {
-        let valid = || bytemuck::cast_slice::<u8, T::Written>(kept.bytes()).iter().all(T::is_valid);
+        let valid = || bytemuck::cast_slice::<u8, T::Written>((*kept).as_ref()).iter().all(T::is_valid);
         debug_assert!(valid(), "the device wrote a row with an unknown choice");
-        RowList { own: Arc::default(), kept: Some(Arc::new(kept)) }
+        RowList { own: Arc::default(), kept: Some(kept) }
     }
 
     /// Returns the rows, to be changed; copies them if they are the device's or shared.
@@ -133,10 +136,10 @@ impl<T> Deref for RowList<T> {
         match &self.kept {
             None => &self.own,
             Some(kept) => {
-                let bytes = kept.bytes();
+                let bytes = (**kept).as_ref();
                 // SAFETY: `written` made it of whole rows: `T` is a `Row`, whose layout these bytes
-                // have, aligned to 8. Each choice is valid by the promise of `written`. Nobody
-                // writes the bytes while they are kept.
+                // have, aligned to 8. Each choice is valid by the promise of `written`. The bytes
+                // stay as they are while they are kept.
                 unsafe { std::slice::from_raw_parts(bytes.as_ptr().cast(), bytes.len() / size_of::<T>()) }
             }
         }
@@ -218,17 +221,22 @@ impl<T: fmt::Debug> fmt::Debug for RowList<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::device::Device;
-    use crate::device::emulator::{Emulator, Mode};
     use crate::scene::BodyId;
+
+    /// Rows in memory of the device.
+    struct Written(Vec<ContactRow>);
+
+    impl AsRef<[u8]> for Written {
+        fn as_ref(&self) -> &[u8] {
+            bytemuck::cast_slice(&self.0)
+        }
+    }
 
     /// Returns rows as the device would write them.
     fn written(rows: &[ContactRow]) -> RowList<Contact> {
-        let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
-        let buffer = device.upload(rows).expect("memory");
         // SAFETY: the tests make no other rows than a kernel, but for the planted one, which the
-        // check refuses.
-        unsafe { RowList::written(buffer.keep(rows.len()).expect("kept")) }
+        // check refuses. They have numbers of 8 bytes, and are never changed.
+        unsafe { RowList::written(Arc::new(Written(rows.to_vec()))) }
     }
 
     fn row(kind: u8, status: u8) -> ContactRow {

@@ -18,6 +18,7 @@ use nearmiss_emulator::Looks;
 use nearmiss_kernels::abi::{Hit, NearHit, NearestHit, Pair, counter};
 use nearmiss_kernels::prim::inclusion::Verdict;
 use nearmiss_kernels::prim::near::corner_weights;
+use std::sync::Arc;
 
 /// Returns the answer of a frame, with its statistics.
 ///
@@ -102,7 +103,8 @@ fn each<T: Ordered + Sync, U: Row<Written = T::Row> + Send, K: Ord>(
 ) -> RowList<U> {
     let lists = match hits {
         // SAFETY: the rows are those that `order_rank` has put into memory that began as zeros.
-        Hits::Rows(kept) => return unsafe { RowList::written(kept) },
+        // `Kept` is aligned, and its bytes are never written.
+        Hits::Rows(kept) => return unsafe { RowList::written(Arc::new(kept)) },
         Hits::Lists(lists) => lists,
     };
     let mut rows = Vec::with_capacity(lists.iter().map(|list| list.len()).sum());

@@ -1,5 +1,5 @@
 //! Answers in page-locked memory. The GPU copies into a block, and the answer keeps it. A block
-//! that nobody looks at is used again: frames allocate nothing, and touch no fresh pages.
+//! that no answer keeps is used again: frames allocate nothing, and touch no fresh pages.
 
 use super::context::{Bound, Context};
 use super::driver::refused;
@@ -10,10 +10,10 @@ use std::sync::Arc;
 
 /// Least size of a block, in bytes.
 const LEAST: usize = 1 << 16;
-/// Size from which on a block has an eighth more than asked for, in bytes; below, it is a power of
+/// Size from which on a block has an eighth more than the answer, in bytes; below, it is a power of
 /// two.
 const LARGE: usize = 64 << 20;
-/// Most blocks that nobody looks at.
+/// Most blocks that no answer keeps.
 const SPARE: usize = 4;
 
 /// Bytes of a block.
@@ -52,7 +52,7 @@ impl Blocks {
         Blocks { context: context.clone(), blocks: Vec::new(), ahead: Vec::new(), epoch: 0 }
     }
 
-    /// The smallest block that nobody looks at and that has room, taken out of the list; a new one
+    /// The smallest block that no answer keeps and that has room, taken out of the list; a new one
     /// if there is none, or nothing if the driver has no memory for it.
     fn take(&mut self, gpu: &Bound, stream: &Stream, bytes: usize) -> Result<Option<Arc<Locked>>, Error> {
         let is_free = |block: &Arc<Locked>| Arc::strong_count(block) == 1;

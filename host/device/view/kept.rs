@@ -36,6 +36,12 @@ impl Kept {
     }
 }
 
+impl AsRef<[u8]> for Kept {
+    fn as_ref(&self) -> &[u8] {
+        self.bytes()
+    }
+}
+
 impl<T: Pod> Buffer<T> {
     /// Keeps the first `len` elements; waits for all work started before, unless they were read
     /// ahead to be kept.
