@@ -6,8 +6,8 @@ use crate::pipeline::counts::FrameCounters;
 use crate::pipeline::layout::Offsets;
 use crate::samples::words;
 use nearmiss_kernels::abi::Located;
-use nearmiss_kernels::stage::order::RUN;
 use nearmiss_kernels::prim::inclusion::Verdict;
+use nearmiss_kernels::stage::order::RUN;
 use std::collections::BTreeSet;
 use std::fmt::Debug;
 

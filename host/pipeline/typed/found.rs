@@ -9,9 +9,9 @@ use crate::pipeline::list::List;
 use crate::pipeline::order::{Order, Ordered};
 use crate::pipeline::placing::Seen;
 use crate::pipeline::precision::Precision;
-use nearmiss_kernels::abi::{Hit, NearHit, NearestHit, Pair};
 #[cfg(doc)]
 use nearmiss_kernels::abi::Named;
+use nearmiss_kernels::abi::{Hit, NearHit, NearestHit, Pair};
 
 /// The kernels' results, still with the indices of the layout and, if possible, in device memory.
 pub enum Listed<'a> {
@@ -81,11 +81,7 @@ impl<'a, T: Ordered> Hits<'a, T> {
     ///
     /// # Errors
     /// Device errors.
-    pub fn of(
-        lists: &[&'a List<T>],
-        order: Option<&'a Order<T>>,
-        counters: &Counts,
-    ) -> Result<Self, Error> {
+    pub fn of(lists: &[&'a List<T>], order: Option<&'a Order<T>>, counters: &Counts) -> Result<Self, Error> {
         Ok(match order {
             Some(order) => Hits::Rows(order.keep(counters)?),
             None => Hits::Lists(lists.iter().map(|list| list.view(counters)).collect::<Result<_, _>>()?),

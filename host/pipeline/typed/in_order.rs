@@ -49,11 +49,33 @@ fn the_device_orders_as_the_host_does() {
     }
 }
 
+/// Slices whose rows the device has ordered are merged into the rows of the whole.
+#[test]
+fn ordered_slices_become_one_answer() {
+    let bodies = [samples::soup(300, 6, false), samples::soup(300, 7, false)];
+    let query = Query::near(0.02);
+    let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
+    let layout = Arc::new(Layout::new(&bodies, query.kind()));
+    let (mut pipeline, at) = one(&device, &bodies, &layout, query);
+    pipeline.queries[at].narrow.order_on(&device, &layout, 10).expect("memory");
+    let looks = Looks::new(None);
+    let mut slice = |share: Share| {
+        pipeline.take(at, share).expect("divided");
+        collect(pipeline.frame(at).expect("a frame"), &query, &layout, &looks).expect("contacts")
+    };
+    let whole = slice(Share::WHOLE);
+    let slices = [0, 1].map(|at| slice(Share::WHOLE.slice(at, 2)));
+    assert!(slices.iter().all(|slice| !slice.is_empty() && slice.len() < whole.len()));
+    let merged = Contacts::merged(slices.into(), |a, b| a + b, &looks).expect("slices");
+    assert_eq!((merged.rows.clone(), merged.hash()), (whole.rows.clone(), whole.hash()));
+}
+
 /// Rows of another body, another choice or another place differ from the host's.
 #[test]
 fn a_row_that_differs_is_noticed() {
     let bodies = [samples::soup(300, 6, false), samples::soup(300, 7, false)];
-    let [host, device] = [false, true].map(|device| answers(&bodies, Query::near(0.02), device).swap_remove(0));
+    let [host, device] =
+        [false, true].map(|device| answers(&bodies, Query::near(0.02), device).swap_remove(0));
     let (Rows::Near(host), Rows::Near(device)) = (host.rows, device.rows) else { panic!("near pairs") };
     let faults: [fn(&mut [NearPair]); 4] = [
         |rows| rows[3].bodies.reverse(),
