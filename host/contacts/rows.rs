@@ -98,8 +98,8 @@ impl<T> RowList<T> {
     /// Returns the rows that `order_rank` wrote. Builds with debug assertions check every choice.
     ///
     /// # Safety
-    /// The bytes are rows that [`Named::row`](nearmiss_kernels::abi::Named::row) made, or zeros. They
-    /// are aligned to 8, and are always the same.
+    /// The bytes are rows that [`Named::row`](nearmiss_kernels::abi::Named::row) made, or zeros;
+    /// aligned to 8, and always the same.
     pub(crate) unsafe fn written(kept: Arc<Bytes>) -> RowList<T>
     where
         T: Row,

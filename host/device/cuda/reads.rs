@@ -58,7 +58,7 @@ impl Cuda {
         locked(&self.staging).known(self.epoch.load(Ordering::Relaxed), memory.addr(), bytes)
     }
 
-    /// The first bytes of a buffer, to be kept by the host, and how many were copied for it. Nothing
+    /// The first bytes of a buffer, to be kept by the host, and how many were copied now. Nothing
     /// if there is no page-locked memory for them.
     pub fn keep(&self, memory: &Memory, bytes: usize) -> Result<(Option<Kept>, usize), Error> {
         let epoch = self.epoch.load(Ordering::Relaxed);

@@ -10,8 +10,8 @@
 //!          order is unique.
 //! Room     rows and keys: counted past the end, grown, run again. Levels of `merge`: as many as
 //!          the longest bin needs, by its count.
-//! Cost     `place`: 12 B in, 8 B out (scattered). `rank`: 8 B for each contact of the bin, a
-//!          contact in, a row out. A merge: a binary search in each other run, of
+//! Cost     `place`: a contact and 8 B in, 8 B out (scattered). `rank`: 8 B for each contact of the
+//!          bin, a contact in, a row out. A merge: a binary search in each other run, of
 //!          [16](super::WAYS_BITS) at most. So a bin of n costs n · log n, not n².
 
 use super::Contacts;
