@@ -156,8 +156,8 @@ impl From<&NearPair> for NearmissNearPair {
             Closest::VertexVertex => NearmissClosest::NEARMISS_VERTEX_VERTEX,
             Closest::EdgeEdge => NearmissClosest::NEARMISS_EDGE_EDGE,
         };
-        let NearPair { kind, bodies, feature_a, feature_b, squared_distance, weights, .. } = *pair;
-        let (kind, bodies) = (kind.into(), numbers(bodies));
+        let NearPair { kind, bodies, feature_a, feature_b, squared_distance, .. } = *pair;
+        let (kind, bodies, weights) = (kind.into(), numbers(bodies), pair.weights());
         NearmissNearPair { kind, closest, bodies, feature_a, feature_b, squared_distance, weights }
     }
 }

@@ -53,7 +53,7 @@ impl FileFaces {
                 let mut pairs: Vec<_> = pairs.iter().map(faces).collect();
                 pairs.sort_unstable_by_key(|pair| [0, 1].map(|k| (pair.bodies[k], pair.triangles[k])));
                 pairs.dedup();
-                Rows::Pairs(pairs)
+                Rows::Pairs(pairs.into())
             }
             Rows::Contacts(all) => {
                 let faces = |c: &Contact| match c.kind {
@@ -64,7 +64,7 @@ impl FileFaces {
                 let key = |c: &Contact| (c.kind, (c.bodies[0], c.feature_a), (c.bodies[1], c.feature_b));
                 all.sort_by(|c, d| key(c).cmp(&key(d)).then(c.toi.total_cmp(&d.toi)));
                 all.dedup_by_key(|c| key(c));
-                Rows::Contacts(all)
+                Rows::Contacts(all.into())
             }
             Rows::Earliest(toi) => Rows::Earliest(*toi),
             // Weights are those of a triangle's corners: `args` allows no other names.

@@ -141,7 +141,7 @@ fn status(status: Status) -> &'static str {
 
 fn near(pair: &NearPair, weighted: bool) -> Vec<String> {
     let own = [kind(pair.kind).into(), pair.feature_a.to_string(), pair.feature_b.to_string()];
-    let weights = weighted.then(|| pair.weights.map(|weight| weight.to_string()));
+    let weights = weighted.then(|| pair.weights().map(|weight| weight.to_string()));
     let weights = weights.into_iter().flatten();
     let distance = [pair.squared_distance.to_string()];
     own.into_iter().chain(distance).chain(weights).chain([pair.closest.name().into()]).collect()
@@ -257,7 +257,7 @@ impl Serialize for JsonRows<'_> {
                     feature_a: pair.feature_a,
                     feature_b: pair.feature_b,
                     squared_distance: pair.squared_distance,
-                    weights: pair.weights,
+                    weights: pair.weights(),
                     closest: pair.closest,
                 };
                 self.placed(Some(at), pair.bodies, row)

@@ -1,7 +1,7 @@
 //! Rows of feature pairs, which have a geometry.
 
 use super::geometry::Named;
-use super::{Contact, NearPair, Rows};
+use super::{Contact, NearPair, RowList, Rows};
 use crate::error::Error;
 
 /// Rows of feature pairs: see [`Detector::geometry`](crate::Detector::geometry).
@@ -23,7 +23,7 @@ mod sealed {
     }
 }
 
-impl sealed::Rows for Vec<Contact> {
+impl sealed::Rows for RowList<Contact> {
     fn count(&self) -> Result<usize, Error> {
         Ok(self.len())
     }
@@ -33,7 +33,7 @@ impl sealed::Rows for Vec<Contact> {
     }
 }
 
-impl sealed::Rows for Vec<NearPair> {
+impl sealed::Rows for RowList<NearPair> {
     fn count(&self) -> Result<usize, Error> {
         Ok(self.len())
     }

@@ -24,9 +24,9 @@ impl Contacts {
         if !ordered {
             // Each share is sorted, so a merging sort suffices.
             match &mut whole.rows {
-                Rows::Pairs(pairs) => sort::merge(pairs, TrianglePair::key, looks),
-                Rows::Contacts(contacts) => sort::merge(contacts, Contact::key, looks),
-                Rows::Near(pairs) => sort::merge(pairs, near::NearPair::key, looks),
+                Rows::Pairs(pairs) => sort::merge(pairs.to_mut(), TrianglePair::key, looks),
+                Rows::Contacts(contacts) => sort::merge(contacts.to_mut(), Contact::key, looks),
+                Rows::Near(pairs) => sort::merge(pairs.to_mut(), near::NearPair::key, looks),
                 Rows::Earliest(_) | Rows::Distance(_) => {}
             }
         }
@@ -36,9 +36,9 @@ impl Contacts {
     /// Appends the rows and counts of another share.
     fn add(&mut self, mut share: Contacts) {
         match (&mut self.rows, share.rows) {
-            (Rows::Pairs(own), Rows::Pairs(other)) => own.extend(other),
-            (Rows::Contacts(own), Rows::Contacts(other)) => own.extend(other),
-            (Rows::Near(own), Rows::Near(other)) => own.extend(other),
+            (Rows::Pairs(own), Rows::Pairs(other)) => own.to_mut().extend_from_slice(&other),
+            (Rows::Contacts(own), Rows::Contacts(other)) => own.to_mut().extend_from_slice(&other),
+            (Rows::Near(own), Rows::Near(other)) => own.to_mut().extend_from_slice(&other),
             (Rows::Earliest(own), Rows::Earliest(other)) => {
                 let first = |toi: Option<f64>, undecided: u64| toi.map(|toi| (toi, undecided));
                 let both = [first(*own, self.undecided), first(other, share.undecided)];

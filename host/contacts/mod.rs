@@ -10,6 +10,7 @@ mod near;
 mod nearest;
 mod notes;
 pub mod on_device;
+mod rows;
 pub(crate) mod sort;
 mod stats;
 pub(crate) mod summary;
@@ -25,6 +26,8 @@ pub use near::{Closest, NearPair};
 pub use nearest::NearestTriangles;
 pub use notes::Note;
 pub use on_device::{DeviceAnswer, DeviceList, Entries};
+pub(crate) use rows::Row;
+pub use rows::RowList;
 pub use stats::Stats;
 pub(crate) use summary::Summary;
 pub use triangles::{TriangleContact, triangle_contacts};
@@ -85,9 +88,8 @@ impl Status {
 /// Two features that meet within the step, or come as near as the minimum separation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[repr(C)]
 pub struct Contact {
-    /// Kind of the pair.
-    pub kind: Kind,
     /// Bodies of both features, in their order. Between two edges the smaller number comes first.
     pub bodies: [BodyId; 2],
     /// Index of the vertex, or of the first edge, in its body.
@@ -99,6 +101,8 @@ pub struct Contact {
     pub toi: f64,
     /// Time by which the features have met, in [toi, 1]; the end of the step for an undecided pair.
     pub toi_upper: f64,
+    /// Kind of the pair.
+    pub kind: Kind,
     /// Certainty of the contact.
     pub status: Status,
 }
@@ -106,6 +110,7 @@ pub struct Contact {
 /// Two triangles that share a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[repr(C)]
 pub struct TrianglePair {
     /// Bodies of the triangles, the smaller number first.
     pub bodies: [BodyId; 2],
@@ -131,14 +136,14 @@ impl PartialEq<TrianglePair> for [u32; 2] {
 pub enum Rows {
     /// Triangle pairs that share a point, ascending by the first triangle and its body, then by the
     /// second.
-    Pairs(Vec<TrianglePair>),
+    Pairs(RowList<TrianglePair>),
     /// Feature pairs that meet, ascending by kind, then by the first feature and its body, then by
     /// the second.
-    Contacts(Vec<Contact>),
+    Contacts(RowList<Contact>),
     /// Smallest time of contact; `None` if nothing meets.
     Earliest(Option<f64>),
     /// Feature pairs within the distance, in the order of contacts.
-    Near(Vec<NearPair>),
+    Near(RowList<NearPair>),
     /// Nearest triangles of different bodies; `None` if no two bodies may meet.
     Distance(Option<NearestTriangles>),
 }
@@ -246,10 +251,10 @@ impl Contacts {
     /// Answer without contacts, for bodies of which no two may meet.
     pub fn none(query: Query) -> Contacts {
         let rows = match query {
-            Query::Discrete(_) => Rows::Pairs(Vec::new()),
-            Query::Continuous(_) => Rows::Contacts(Vec::new()),
+            Query::Discrete(_) => Rows::Pairs(RowList::default()),
+            Query::Continuous(_) => Rows::Contacts(RowList::default()),
             Query::Earliest(_) => Rows::Earliest(None),
-            Query::Near(_) => Rows::Near(Vec::new()),
+            Query::Near(_) => Rows::Near(RowList::default()),
             Query::Distance(_) => Rows::Distance(None),
         };
         Contacts::new(rows, query, query.checks_start().then_some(0))

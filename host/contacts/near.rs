@@ -1,7 +1,8 @@
 //! Pairs of features within a distance.
 
-use super::Kind;
+use super::{Kind, edge_weights};
 use crate::scene::BodyId;
+use nearmiss_kernels::prim::near::corner_weights;
 
 /// Nearest parts of two features. Its number (`as u8`) is used in other languages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -45,9 +46,8 @@ impl Closest {
 /// Two features within a distance of each other, and their nearest points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[repr(C)]
 pub struct NearPair {
-    /// Kind of the pair.
-    pub kind: Kind,
     /// Bodies of both features, in their order. Between two edges the smaller number comes first.
     pub bodies: [BodyId; 2],
     /// Index of the vertex, or of the first edge, in its body.
@@ -57,15 +57,29 @@ pub struct NearPair {
     /// Squared distance. Its root is off by at most 192 half ulps of the features' extent. A square
     /// below 2^-1022 has fewer digits. One below 2^-1075 is 0, even if the features are apart.
     pub squared_distance: f64,
-    /// Weights of the four vertices in the two nearest points, in the order of
-    /// [`ContactGeometry`](super::ContactGeometry). That is the vertex and the face's corners, or
-    /// the ends of both edges, the larger index first. The weights of each feature sum to 1.
-    pub weights: [f64; 4],
+    /// Nearest points. Vertex and face: weights of the face's second and third corner. Two edges:
+    /// weight of the end with the smaller index, of each. [`NearPair::weights`] has all.
+    pub at: [f64; 2],
+    /// Kind of the pair.
+    pub kind: Kind,
     /// Nearest parts of both features: those with weights other than 0 and 1.
     pub closest: Closest,
 }
 
 impl NearPair {
+    /// Weights of the four vertices in the two nearest points, in the order of
+    /// [`ContactGeometry`](super::ContactGeometry). That is the vertex and the face's corners, or
+    /// the ends of both edges, the larger index first. The weights of each feature sum to 1.
+    pub fn weights(&self) -> [f64; 4] {
+        match self.kind {
+            Kind::Ee => edge_weights(self.at),
+            Kind::Vf => {
+                let [x, y, z] = corner_weights(self.at);
+                [1.0, x, y, z]
+            }
+        }
+    }
+
     /// Sort key of pairs.
     pub(crate) fn key(&self) -> (Kind, [(BodyId, u32); 2]) {
         (self.kind, [(self.bodies[0], self.feature_a), (self.bodies[1], self.feature_b)])
@@ -78,7 +92,7 @@ impl NearPair {
         bytes[1] = self.closest as u8;
         bytes[2..6].copy_from_slice(&self.feature_a.to_le_bytes());
         bytes[6..10].copy_from_slice(&self.feature_b.to_le_bytes());
-        let [_, x, y, z] = self.weights;
+        let [_, x, y, z] = self.weights();
         let [x, y, z] = if self.kind == Kind::Ee { [x, z, 0.0] } else { [x, y, z] };
         for (to, from) in bytes[10..].chunks_exact_mut(8).zip([self.squared_distance, x, y, z]) {
             to.copy_from_slice(&from.to_le_bytes());

@@ -39,7 +39,7 @@ pub struct DeviceAnswer {
     /// device has put them [in order](DeviceAnswer::is_ordered). Otherwise they have two:
     /// vertex/face pairs, then edge/edge pairs.
     pub lists: Vec<DeviceList>,
-    /// Whether entries are in canonical order: on a GPU, if 64-bit keys can distinguish them.
+    /// Whether entries are in canonical order: on a GPU, if there are any rows.
     pub is_ordered: bool,
     /// Address of the [`FrameStatus`]: the number of entries, and whether the answer is complete. Its
     /// counts, those of crossings included, are usable only if `short` and `invalid` are 0.

@@ -21,7 +21,7 @@ pub use marks::Event;
 pub use nearmiss_emulator as emulator;
 pub use nearmiss_emulator::Interrupt;
 pub(crate) use replay::{Marks, Replay};
-pub use view::{Ahead, View};
+pub use view::{Ahead, Kept, View};
 
 use crate::error::Error;
 use crate::memory;

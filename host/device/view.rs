@@ -1,5 +1,9 @@
 //! Reads of a device's memory by the host, without a copy if the machine allows it.
 
+mod kept;
+
+pub use kept::Kept;
+
 use super::buffer::{Buffer, Memory};
 use super::usage::Usage;
 use super::{Device, Machine};
@@ -48,12 +52,21 @@ pub struct Ahead<'a> {
     memory: &'a Memory,
     bytes: usize,
     purpose: &'static str,
+    is_kept: bool,
+}
+
+impl Ahead<'_> {
+    /// The same, to be [kept](Buffer::keep) by the host.
+    pub fn to_keep(self) -> Self {
+        Ahead { is_kept: true, ..self }
+    }
 }
 
 impl<T: Pod> Buffer<T> {
     /// The first `len` elements, or as many as there are, for [`Device::read_ahead`].
     pub fn ahead(&self, len: usize) -> Ahead<'_> {
-        Ahead { memory: &self.memory, bytes: len.min(self.len) * size_of::<T>(), purpose: self.purpose }
+        let bytes = len.min(self.len) * size_of::<T>();
+        Ahead { memory: &self.memory, bytes, purpose: self.purpose, is_kept: false }
     }
 
     /// A view of the first `len` elements; waits for all work started before, unless they were read
@@ -103,7 +116,9 @@ impl Device {
                 all.iter().for_each(|ahead| self.ledger.read(ahead.purpose, ahead.bytes as u64));
                 // Memory of another machine is refused at its read.
                 let card = all.iter().filter_map(|ahead| match ahead.memory {
-                    Memory::Gpu(memory) => Some((memory, ahead.bytes)),
+                    Memory::Gpu(memory) => {
+                        Some(super::cuda::First { memory, bytes: ahead.bytes, is_kept: ahead.is_kept })
+                    }
                     Memory::Host(_) => None,
                 });
                 c.read_ahead(&card.collect::<Vec<_>>())

@@ -6,17 +6,19 @@ mod features;
 use super::counts::Counts;
 use super::{Found, Hits, Layout, Listed, Stages};
 use crate::contacts::{
-    Caveat, Closest, Contact, Contacts, Front, Kind, NearPair, NearestTriangles, Queues, Rows, Stats, Status,
-    TrianglePair, edge_weights, sort,
+    Caveat, Closest, Contact, Contacts, Front, Kind, NearPair, NearestTriangles, Queues, Row, RowList, Rows,
+    Stats, Status, TrianglePair, sort,
 };
 use crate::error::Error;
 use crate::memory;
+use crate::pipeline::order::Ordered;
 use crate::query::Query;
-use features::{Features, edge_edge, vertex_face};
+use features::{Features, features};
 use nearmiss_emulator::Looks;
 use nearmiss_kernels::abi::{Hit, NearHit, NearestHit, Pair, counter};
 use nearmiss_kernels::prim::inclusion::Verdict;
 use nearmiss_kernels::prim::near::corner_weights;
+use std::sync::Arc;
 
 /// Returns the answer of a frame, with its statistics.
 ///
@@ -33,15 +35,14 @@ pub fn collect(
     let vf_ee = [count(counter::VF), count(counter::EE)];
     let of_triangles = matches!(found.listed, Listed::Pairs(_) | Listed::Nearest(_));
     let starts_crossing = found.is_start_checked.then(|| count(counter::STARTS_CROSSING));
-    let mut contacts = Contacts::new(rows(&found, layout, looks), *query, starts_crossing);
-    contacts.undecided = match found.listed {
+    let undecided = match found.listed {
         Listed::Earliest { undecided, .. } => undecided.into(),
         Listed::Pairs(_) | Listed::Hits { .. } | Listed::Near(_) | Listed::Nearest(_) => {
             count(counter::UNDECIDED)
         }
     };
-    contacts.caveats = caveats(&found);
-    contacts.stats = Stats {
+    let caveats = caveats(&found);
+    let stats = Stats {
         stages,
         triangle_pairs: count(counter::PAIRS),
         candidates: if of_triangles { count(counter::PAIRS) } else { vf_ee[0] + vf_ee[1] },
@@ -59,79 +60,74 @@ pub fn collect(
         queues: queues(&found.counters),
         front: front(&found.counters),
     };
+    let mut contacts = Contacts::new(rows(found, layout, looks), *query, starts_crossing);
+    (contacts.undecided, contacts.caveats, contacts.stats) = (undecided, caveats, stats);
     if looks.ended() { Err(Error::Interrupted) } else { Ok(contacts) }
 }
 
 /// Returns the rows of the answer; a part of them if an interrupt ends it.
-fn rows(found: &Found, layout: &Layout, looks: &Looks) -> Rows {
-    match &found.listed {
-        Listed::Earliest { toi, .. } => Rows::Earliest(*toi),
-        Listed::Near(hits) => Rows::Near(near_pairs(hits, found.ordered, layout, looks)),
+fn rows(found: Found, layout: &Layout, looks: &Looks) -> Rows {
+    match found.listed {
+        Listed::Earliest { toi, .. } => Rows::Earliest(toi),
         Listed::Nearest(nearest) => Rows::Distance(nearest.first().map(|hit| nearest_triangles(hit, layout))),
-        Listed::Pairs(listed) => {
-            let pair = |p: &Pair| {
+        Listed::Pairs(hits) => {
+            let pair = |p: &Pair, _| {
                 let [(a, p), (b, q)] = [p.a, p.b].map(|t| layout.locate(t, |at| at.triangle));
                 TrianglePair { bodies: [a, b], triangles: [p, q] }
             };
-            let mut pairs = Vec::new();
-            sort::extend(&mut pairs, listed, pair, looks);
-            if !found.ordered {
-                sort::sort(&mut pairs, TrianglePair::key, looks);
-            }
-            Rows::Pairs(pairs)
+            Rows::Pairs(each(hits, pair, TrianglePair::key, looks))
         }
         Listed::Hits { hits, certified } => {
-            let contact = |(kind, bodies, [a, b]): Features, verdict: &Verdict| {
-                let status = Status::of(*certified, verdict);
-                Contact {
-                    kind,
-                    bodies,
-                    feature_a: a,
-                    feature_b: b,
-                    toi: verdict.toi,
-                    toi_upper: verdict.toi_upper,
-                    status,
-                }
+            let contact = |hit: &Hit, kind| {
+                let (kind, bodies, [feature_a, feature_b]) = features(layout, kind, [hit.a, hit.b]);
+                let (Verdict { toi, toi_upper, .. }, status) =
+                    (hit.verdict, Status::of(certified, &hit.verdict));
+                Contact { bodies, feature_a, feature_b, toi, toi_upper, kind, status }
             };
-            let [of_vf, of_ee] = hits.each();
-            let vf = |hit: &Hit| contact(vertex_face(layout, [hit.a, hit.b]), &hit.verdict);
-            let ee = |hit: &Hit| contact(edge_edge(layout, [hit.a, hit.b]), &hit.verdict);
-            let mut contacts = Vec::with_capacity(of_vf.len() + of_ee.len());
-            sort::extend(&mut contacts, of_vf, vf, looks);
-            sort::extend(&mut contacts, of_ee, ee, looks);
-            if !found.ordered {
-                sort::sort(&mut contacts, Contact::key, looks);
-            }
-            Rows::Contacts(contacts)
+            Rows::Contacts(each(hits, contact, Contact::key, looks))
+        }
+        Listed::Near(hits) => {
+            let near = |hit: &NearHit, kind| near_pair(features(layout, kind, [hit.a, hit.b]), hit);
+            Rows::Near(each(hits, near, NearPair::key, looks))
         }
     }
 }
 
-/// Returns the kernels' hits in canonical order, with the indices of each body; an empty list if an
-/// interrupt ends it.
-fn near_pairs(hits: &Hits<NearHit>, ordered: bool, layout: &Layout, looks: &Looks) -> Vec<NearPair> {
-    let [of_vf, of_ee] = hits.each();
-    let vf = |hit: &NearHit| near_pair(vertex_face(layout, [hit.a, hit.b]), hit);
-    let ee = |hit: &NearHit| near_pair(edge_edge(layout, [hit.a, hit.b]), hit);
-    let mut pairs = Vec::with_capacity(of_vf.len() + of_ee.len());
-    sort::extend(&mut pairs, of_vf, vf, looks);
-    sort::extend(&mut pairs, of_ee, ee, looks);
-    if !ordered {
-        sort::sort(&mut pairs, NearPair::key, looks);
+/// Returns rows in canonical order. Those of the device are that; contacts of lists become rows,
+/// and are sorted.
+fn each<T: Ordered + Sync, U: Row<Written = T::Row> + Send, K: Ord>(
+    hits: Hits<T>,
+    row: impl Fn(&T, Kind) -> U + Sync,
+    key: impl Fn(&U) -> K + Sync,
+    looks: &Looks,
+) -> RowList<U> {
+    let lists = match hits {
+        // SAFETY: the rows are those that `order_rank` has put into memory that began as zeros.
+        // `Kept` is aligned, and its bytes are never written.
+        Hits::Rows(kept) => return unsafe { RowList::written(Arc::new(kept)) },
+        Hits::Lists(lists) => lists,
+    };
+    let mut rows = Vec::with_capacity(lists.iter().map(|list| list.len()).sum());
+    for (list, kind) in lists.iter().zip([Kind::Vf, Kind::Ee]) {
+        sort::extend(&mut rows, list, |hit| row(hit, kind), looks);
     }
-    pairs
+    sort::sort(&mut rows, key, looks);
+    rows.into()
 }
 
 /// Returns two features within a distance.
 fn near_pair((kind, bodies, [a, b]): Features, hit: &NearHit) -> NearPair {
-    let weights = if kind == Kind::Ee {
-        edge_weights(hit.at)
-    } else {
-        let [x, y, z] = corner_weights(hit.at);
-        [1.0, x, y, z]
+    let mut pair = NearPair {
+        bodies,
+        feature_a: a,
+        feature_b: b,
+        squared_distance: hit.squared,
+        at: hit.at,
+        kind,
+        closest: Closest::VertexVertex,
     };
-    let closest = Closest::of(kind, weights);
-    NearPair { kind, bodies, feature_a: a, feature_b: b, squared_distance: hit.squared, weights, closest }
+    pair.closest = Closest::of(kind, pair.weights());
+    pair
 }
 
 /// Returns the nearest triangles, with the indices of each body.

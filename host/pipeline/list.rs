@@ -2,7 +2,7 @@
 //! the frame fills it again.
 
 use super::counts::Counts;
-use crate::device::{Ahead, Buffer, Device, View};
+use crate::device::{Ahead, Buffer, Device, Kept, View};
 use crate::error::Error;
 use bytemuck::Pod;
 use nearmiss_kernels::abi::{Counter, Counters, Output, Span};
@@ -16,6 +16,9 @@ pub struct List<T> {
 
 /// Longest list: entries are numbered with 32 bits.
 pub const LONGEST: u64 = u32::MAX as u64;
+/// Most bytes that are read ahead beyond the last frame's demand: they take as long as a short
+/// wait.
+const MORE: usize = 1 << 18;
 
 impl<T: Pod> List<T> {
     /// Allocates a list with room for `capacity` entries.
@@ -81,6 +84,22 @@ impl<T: Pod> List<T> {
     pub fn ahead(&self, counters: &Counts) -> Ahead<'_> {
         let demand = self.demand(counters);
         self.entries.ahead((demand + demand / 8) as usize)
+    }
+
+    /// Returns the first entries, to be read ahead and kept: as many, but few more for a long list.
+    /// Entries beyond these take another wait.
+    pub fn ahead_to_keep(&self, counters: &Counts) -> Ahead<'_> {
+        let demand = self.demand(counters);
+        let more = (demand / 8).min((MORE / size_of::<T>()) as u64);
+        self.entries.ahead((demand + more) as usize).to_keep()
+    }
+
+    /// Returns the entries, to be kept.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn keep(&self, counters: &Counts) -> Result<Kept, Error> {
+        self.entries.keep(self.demand(counters) as usize)
     }
 
     /// Returns a view of the entries.

@@ -1,60 +1,129 @@
-//! Order: sorts contacts into canonical order on the device, if that is faster than the host: on a
-//! GPU.
+//! Order: contacts become rows in canonical order on the device, if that is faster than the host:
+//! on a GPU.
+
+#[cfg(test)]
+mod tests;
 
 use super::counts::Counts;
-use super::layout::Layout;
+use super::layout::{Layout, Offsets};
 use super::list::{GrowableOutput, List};
-use super::sorter::{counted, sort, words};
-use crate::device::{Buffer, Device, View};
+use crate::device::{Buffer, Device, Kept};
 use crate::error::Error;
 use crate::pipeline::{launch, purpose};
-use bytemuck::Pod;
-use nearmiss_kernels::abi::{Counters, Named, OrderArgs, Output, counter};
+use nearmiss_kernels::abi::{
+    Bins, Counter, Counters, Feature, Hit, Named, NearHit, OrderArgs, Output, Pair, Span, counter,
+};
 use nearmiss_kernels::entry::{self, Entry};
-use nearmiss_kernels::stage::order::LIST_BITS;
+use nearmiss_kernels::stage::order::starts::{EACH, MOST_TILES};
+use nearmiss_kernels::stage::order::{RUN_BITS, WAYS_BITS};
 
 /// A kind of contact that the device can order.
-pub trait Ordered: Pod + Named {
-    /// The kernel that writes their keys.
-    type Keys: Entry<Args = OrderArgs<Self>>;
-    /// The kernel that moves them to the places of their keys.
-    type Gather: Entry<Args = OrderArgs<Self>>;
+pub trait Ordered: Named {
+    /// First features of each list: bins are numbered through them.
+    const BINS: &[Feature];
+    /// The kernel that counts each bin.
+    type Count: Entry<Args = OrderArgs<Self>>;
+    /// The kernel that puts a key of each into its bin.
+    type Place: Entry<Args = OrderArgs<Self>>;
+    /// The kernel that merges runs of keys.
+    type Merge: Entry<Args = OrderArgs<Self>>;
+    /// The kernel that writes rows to their places.
+    type Rank: Entry<Args = OrderArgs<Self>>;
 }
 
-impl Ordered for nearmiss_kernels::abi::Pair {
-    type Keys = entry::order_keys_pair;
-    type Gather = entry::order_gather_pair;
+impl Ordered for Pair {
+    const BINS: &[Feature] = &[Feature::TRIANGLE];
+    type Count = entry::order_count_pair;
+    type Place = entry::order_place_pair;
+    type Merge = entry::order_merge_pair;
+    type Rank = entry::order_rank_pair;
 }
 
-impl Ordered for nearmiss_kernels::abi::Hit {
-    type Keys = entry::order_keys_hit;
-    type Gather = entry::order_gather_hit;
+impl Ordered for Hit {
+    const BINS: &[Feature] = &[Feature::VERTEX, Feature::EDGE];
+    type Count = entry::order_count_hit;
+    type Place = entry::order_place_hit;
+    type Merge = entry::order_merge_hit;
+    type Rank = entry::order_rank_hit;
 }
 
-impl Ordered for nearmiss_kernels::abi::NearHit {
-    type Keys = entry::order_keys_near;
-    type Gather = entry::order_gather_near;
+impl Ordered for NearHit {
+    const BINS: &[Feature] = &[Feature::VERTEX, Feature::EDGE];
+    type Count = entry::order_count_near;
+    type Place = entry::order_place_near;
+    type Merge = entry::order_merge_near;
+    type Rank = entry::order_rank_near;
 }
 
-/// The ordered list, and the memory of the sort.
-pub struct Order<T> {
-    /// All contacts, in order.
-    pub list: List<T>,
-    items: [Buffer<u64>; 2],
+/// The rows in order, and the memory of the sort: 8 B a bin, 12 B a contact, and 8 B more a contact
+/// if a bin is long.
+pub struct Order<T: Ordered> {
+    /// All rows, in order.
+    pub rows: List<T::Row>,
+    /// All contacts in the same order, for the caller's kernels; none unless prepared for them.
+    contacts: Option<Buffer<T>>,
     counts: Buffer<u64>,
-    /// Bits of a feature's index.
-    bits: u32,
+    starts: Buffer<u32>,
+    sums: Buffer<u32>,
+    slots: Buffer<u32>,
+    keys: [Buffer<u64>; 2],
+    /// First features of each body; none for one body.
+    bodies: Buffer<u32>,
+    /// The bin of the first edge.
+    second_bin: u32,
+    /// Words of a tile of bins.
+    words: u32,
+    levels: Levels,
+    /// Whether all counts are 0: they are after a frame that ended.
+    is_clear: bool,
 }
 
-/// The ordering of any kind of contacts; it has no list before it has begun.
+/// How many merges long bins take.
+struct Levels(u32);
+
+impl Levels {
+    /// Returns the most contacts of a bin that so many merges, and the ranks, put into order.
+    fn room(levels: u32) -> u64 {
+        1 << (RUN_BITS + WAYS_BITS * levels)
+    }
+
+    /// Returns the keys of a run, and how many runs become one, by a merge or by the ranks: both as
+    /// logarithms.
+    fn runs(level: u32) -> (u32, u32) {
+        if level == 0 { (0, RUN_BITS) } else { (RUN_BITS + WAYS_BITS * (level - 1), WAYS_BITS) }
+    }
+}
+
+impl GrowableOutput for Levels {
+    fn counter(&self) -> Counter {
+        counter::LONGEST_BIN
+    }
+    fn room(&self) -> u64 {
+        Levels::room(self.0)
+    }
+    fn grow(&mut self, _: &Device, counters: &Counts) -> Result<bool, Error> {
+        let before = self.0;
+        while self.has_overflowed(counters) {
+            self.0 += 1;
+        }
+        Ok(self.0 > before)
+    }
+}
+
+/// The ordering of any kind of contacts; it has no lists before it has begun.
 pub trait Ordering {
     /// Makes the device order contacts, with room for `capacity` at first.
     ///
     /// # Errors
     /// Device errors.
     fn begin(&mut self, device: &Device, layout: &Layout, capacity: usize) -> Result<(), Error>;
-    /// Returns the ordered list.
-    fn list(&mut self) -> Option<&mut dyn GrowableOutput>;
+    /// Returns the lists of the ordering.
+    fn lists(&mut self) -> Vec<&mut dyn GrowableOutput>;
+    /// Allocates memory for contacts in order, for submissions.
+    ///
+    /// # Errors
+    /// Device errors.
+    fn prepare(&mut self, device: &Device) -> Result<(), Error>;
 }
 
 impl<T: Ordered> Ordering for Option<Order<T>> {
@@ -63,9 +132,25 @@ impl<T: Ordered> Ordering for Option<Order<T>> {
         Ok(())
     }
 
-    fn list(&mut self) -> Option<&mut dyn GrowableOutput> {
-        self.as_mut().map(|order| &mut order.list as &mut dyn GrowableOutput)
+    fn lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
+        self.as_mut().map_or(Vec::new(), |order| vec![&mut order.rows, &mut order.levels])
     }
+
+    fn prepare(&mut self, device: &Device) -> Result<(), Error> {
+        self.as_mut().map_or(Ok(()), |order| order.prepare(device))
+    }
+}
+
+/// Contacts to order, and how.
+pub struct Unordered<'a, T> {
+    /// Triangle pairs, or vertices and faces.
+    pub first: &'a List<T>,
+    /// Edges, if there are any.
+    pub second: Option<&'a List<T>>,
+    /// Status of a contact that is no undecided one.
+    pub decided: u8,
+    /// Whether the caller's kernels read contacts in order.
+    pub is_submitted: bool,
 }
 
 impl<T: Ordered> Order<T> {
@@ -75,205 +160,126 @@ impl<T: Ordered> Order<T> {
     /// Device errors.
     pub fn new(device: &Device, layout: &Layout, capacity: usize) -> Result<Self, Error> {
         let ends = layout.starts.last().copied().unwrap_or_default();
-        let most = ends.vertex.max(ends.triangle).max(ends.edge);
+        let bins = |of: &Feature| u64::from(starts(&ends)[of.place() as usize]);
+        let (second_bin, all) = (bins(&T::BINS[0]), T::BINS.iter().map(bins).sum::<u64>());
+        let order = device.of(purpose::ORDER);
+        let most = u64::from(u32::MAX) / 2;
+        if all > most {
+            let bytes = |bins: u64| 8 * bins;
+            let what = "bins of contacts".into();
+            return Err(Error::OutOfMemory { what, asked: bytes(all), given: bytes(most) });
+        }
+        // One place more than there are bins: the end of the last.
+        let words = all as u32 / 2 + 1;
+        let round = EACH * device.lanes::<entry::order_starts>();
+        let of_a_tile = words.div_ceil(round).div_ceil(MOST_TILES) * round;
+        let table: Vec<u32> = layout.starts.iter().flat_map(starts).collect();
         Ok(Order {
-            list: List::new(device, "contacts in order", counter::ORDERED, capacity)?,
-            items: [device.buffer(0)?, device.buffer(0)?],
-            counts: device.buffer(0)?,
-            bits: bits(most.into()),
+            rows: List::new(device, "contacts in order", counter::ORDERED, capacity)?,
+            contacts: None,
+            counts: order.buffer(words as usize)?,
+            starts: order.buffer(2 * words as usize)?,
+            sums: order.buffer(words.div_ceil(of_a_tile) as usize)?,
+            slots: order.buffer(0)?,
+            keys: [order.buffer(0)?, order.buffer(0)?],
+            bodies: order.upload(if layout.starts.len() > 2 { &table } else { &[] })?,
+            second_bin: second_bin as u32,
+            words: of_a_tile,
+            levels: Levels(0),
+            is_clear: false,
         })
     }
 
-    /// Returns the bits of a contact's place in its list.
-    fn number_bits(&self) -> u32 {
-        bits(self.list.capacity() as u64)
+    fn prepare(&mut self, device: &Device) -> Result<(), Error> {
+        let capacity = self.rows.capacity();
+        if self.contacts.as_ref().is_none_or(|contacts| contacts.len() != capacity) {
+            self.contacts = Some(device.of(purpose::ORDER).buffer(capacity)?);
+        }
+        Ok(())
     }
 
-    /// Returns whether the indices of both features and the place fit one word. A place has at most
-    /// 32 bits. Otherwise the lists stay as they are, and the host orders them.
-    pub fn fits(&self) -> bool {
-        LIST_BITS + 2 * self.bits + self.number_bits() <= 64
+    /// Returns the contacts in order, in device memory; none unless prepared.
+    pub fn contacts(&self) -> Option<Span<T>> {
+        self.contacts.as_ref().map(Buffer::span)
     }
 
-    /// Returns the entries of the lists in order, if they were ordered.
+    /// Returns the rows, in order.
     ///
     /// # Errors
     /// Device errors.
-    pub fn view(&self, counters: &Counts, lists: &[&List<T>]) -> Result<Option<View<'_, T>>, Error> {
-        let all: u64 = lists.iter().map(|list| list.demand(counters)).sum();
-        (self.list.demand(counters) == all).then(|| self.list.view(counters)).transpose()
+    pub fn keep(&self, counters: &Counts) -> Result<Kept, Error> {
+        self.rows.keep(counters)
+    }
+
+    /// Takes memory for as many contacts as there are rows.
+    fn reserve(&mut self, device: &Device) -> Result<(), Error> {
+        let (order, capacity) = (device.of(purpose::ORDER), self.rows.capacity());
+        let merged = if self.levels.0 > 0 { capacity } else { 0 };
+        if self.slots.len() != capacity {
+            self.slots = order.buffer(0)?;
+            self.slots = order.buffer(capacity)?;
+        }
+        for (keys, len) in self.keys.iter_mut().zip([capacity, merged]) {
+            if keys.len() != len {
+                *keys = order.buffer(0)?;
+                *keys = order.buffer(len)?;
+            }
+        }
+        Ok(())
     }
 
     /// Orders one list or two. Entries beyond the capacity are counted and left out.
     ///
     /// # Errors
     /// Device errors.
-    pub fn run(
-        &mut self,
-        device: &Device,
-        first: &List<T>,
-        second: Option<&List<T>>,
-        counters: Counters,
-    ) -> Result<(), Error> {
-        // If the keys do not fit, no contact is counted as ordered.
-        if !self.fits() {
-            return Ok(());
+    pub fn run(&mut self, device: &Device, given: &Unordered<T>, counters: Counters) -> Result<(), Error> {
+        self.reserve(device)?;
+        if !self.is_clear {
+            self.counts.clear()?;
         }
-        let capacity = self.list.capacity();
-        let bytes: Vec<u32> =
-            (0..LIST_BITS + 2 * self.bits).step_by(8).map(|at| at + self.number_bits()).collect();
-        let words = bytes.len() * words(device, capacity as u32);
-        if self.items[0].len() != capacity || self.counts.len() != words {
-            let keys = device.of(purpose::ORDER);
-            self.items = [keys.buffer(capacity)?, keys.buffer(capacity)?];
-            self.counts = keys.buffer(words)?;
-        }
-        self.counts.clear()?;
-        let counts = self.counts.span();
-        let out = self.list.output(counters);
-        let args = |items: &Buffer<u64>| OrderArgs {
-            first: first.output(counters),
-            second: second.map_or(Output::EMPTY, |list| list.output(counters)),
-            out,
-            items: items.span(),
-            tiles: counted(device, counts, capacity as u32, 0),
-            bits: self.bits,
-            number_bits: self.number_bits(),
+        self.is_clear = false;
+        let contacts = self.contacts().filter(|_| given.is_submitted);
+        let args = OrderArgs {
+            first: given.first.output(counters),
+            second: given.second.map_or(Output::EMPTY, |list| list.output(counters)),
+            rows: self.rows.output(counters),
+            contacts: contacts.map_or(Output::EMPTY, |span| counters.output(span, counter::ORDERED)),
+            bins: Bins {
+                counts: self.counts.span(),
+                starts: self.starts.span(),
+                sums: self.sums.span(),
+                counters,
+                words: self.words,
+                pad: 0,
+            },
+            slots: self.slots.span(),
+            keys: self.keys[0].span(),
+            merged: self.keys[1].span(),
+            bodies: self.bodies.span(),
+            second_bin: self.second_bin,
+            run: 0,
+            ways: 0,
+            decided: given.decided.into(),
         };
-        let (keys, gather) = (args(&self.items[0]), args(&self.items[bytes.len() % 2]));
-        launch::striding::<T::Keys>(device, capacity, &keys)?;
-        let live = (capacity as u32, out.count());
-        sort(device, self.items.each_ref(), live, counts, &bytes)?;
-        launch::striding::<T::Gather>(device, capacity, &gather)
+        let (capacity, tiles) = (self.rows.capacity(), self.sums.len() as u32);
+        launch::striding::<T::Count>(device, capacity, &args)?;
+        launch::blocks::<entry::order_sums>(device, tiles, &args.bins)?;
+        launch::blocks::<entry::order_starts>(device, tiles, &args.bins)?;
+        self.is_clear = true;
+        launch::striding::<T::Place>(device, capacity, &args)?;
+        let level = |level: u32| {
+            let [keys, merged] = [level % 2, (level + 1) % 2].map(|at| self.keys[at as usize].span());
+            let (run, ways) = Levels::runs(level);
+            OrderArgs { keys, merged, run, ways, ..args }
+        };
+        for at in 0..self.levels.0 {
+            launch::striding::<T::Merge>(device, capacity, &level(at))?;
+        }
+        launch::striding::<T::Rank>(device, capacity, &level(self.levels.0))
     }
 }
 
-/// Returns the bits of numbers below `end`; at least one.
-fn bits(end: u64) -> u32 {
-    end.max(2).next_power_of_two().trailing_zeros()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::device::emulator::{Emulator, Mode, Order as Blocks};
-    use crate::pipeline::counts::FrameCounters;
-    use crate::pipeline::layout::Offsets;
-    use crate::samples::words;
-    use nearmiss_kernels::abi::{Hit, Pair};
-    use nearmiss_kernels::prim::inclusion::Verdict;
-    use std::collections::BTreeSet;
-
-    /// Vertices, triangles and edges of each of two bodies.
-    const OF_A_BODY: u32 = 700;
-
-    /// The ordered contacts, and their count.
-    type Outcome<T> = (Option<Vec<T>>, u64);
-
-    fn machines() -> Vec<Device> {
-        let engine = |lanes| Emulator::new(Mode::Engine, None).expect("threads").with_lanes(lanes);
-        let order = |order| Emulator::new(Mode::Sanitizer(order), None).expect("threads").with_lanes(32);
-        let engines = [1, 7, 33, 256].map(engine).into_iter();
-        engines.chain([Blocks::Reverse, Blocks::Shuffled(3)].map(order)).map(Device::emulator).collect()
-    }
-
-    /// Returns distinct contacts of two bodies, unordered; the time of each is its place here.
-    fn hits(seed: u64, count: usize) -> Vec<Hit> {
-        let (mut rng, mut seen, mut all) = (words(seed), BTreeSet::new(), Vec::new());
-        while all.len() < count {
-            let [a, b] = [0; 2].map(|_| (rng.next().expect("endless") % u64::from(2 * OF_A_BODY)) as u32);
-            if seen.insert([a, b]) {
-                let toi = all.len() as f64;
-                all.push(Hit { a, b, verdict: Verdict { toi, ..Verdict::default() } });
-            }
-        }
-        all
-    }
-
-    /// Orders two lists on a device, with room for `capacity` contacts.
-    fn ordered<T: Ordered>(device: &Device, lists: [&[T]; 2], capacity: usize) -> Outcome<T> {
-        let at = |n| Offsets { vertex: n, triangle: n, edge: n };
-        let layout = Layout { starts: vec![at(0), at(OF_A_BODY), at(2 * OF_A_BODY)], ..Layout::default() };
-        let mut order = Order::<T>::new(device, &layout, capacity).expect("memory");
-        let mut counts = Counts::default();
-        let lists = [(counter::VF_HITS, lists[0]), (counter::EE_HITS, lists[1])].map(|(at, entries)| {
-            let mut list = List::new(device, "contacts", at, entries.len()).expect("memory");
-            list.put(entries, &mut counts).expect("written");
-            list
-        });
-        let mut counters = FrameCounters::new(device).expect("memory");
-        // Twice: a frame's data must not reach the next one.
-        for _ in 0..2 {
-            counts[counter::ORDERED] = 0;
-            counters.write(&counts).expect("written");
-            order.run(device, &lists[0], Some(&lists[1]), counters.counters()).expect("no rule is broken");
-            counts = counters.read().expect("read");
-        }
-        let demand = order.list.demand(&counts);
-        let whole = demand as usize <= capacity;
-        let all = whole.then(|| order.view(&counts, &[&lists[0], &lists[1]]).expect("read")).flatten();
-        let all = all.map(|view| view.to_vec());
-        (all, demand)
-    }
-
-    /// Returns the expected order: the first list, then the second, each by both features.
-    fn wanted<T: Ordered>(lists: [&[T]; 2]) -> Vec<T> {
-        let mut all: Vec<(usize, T)> =
-            (0..2).flat_map(|i| lists[i].iter().map(move |&contact| (i, contact))).collect();
-        all.sort_by_key(|(list, contact)| (*list, contact.name()));
-        all.into_iter().map(|(_, contact)| contact).collect()
-    }
-
-    #[test]
-    fn contacts_of_every_kind_come_in_canonical_order() {
-        for device in machines() {
-            for (vf, ee) in [(0, 0), (1, 0), (0, 1), (300, 0), (700, 900), (3, 2_500)] {
-                let (vf, ee) = (hits(5, vf), hits(6, ee));
-                for capacity in [4_096, vf.len() + ee.len()] {
-                    let lists = [&vf[..], &ee[..]];
-                    let (found, demand) = ordered(&device, lists, capacity);
-                    assert_eq!(demand, (vf.len() + ee.len()) as u64);
-                    assert!(found.expect("capacity") == wanted(lists), "{}: {lists:?}", device.name());
-                }
-            }
-            let pairs: Vec<Pair> = hits(7, 400).iter().map(|hit| Pair { a: hit.a, b: hit.b }).collect();
-            let (found, _) = ordered(&device, [&pairs, &[]], 500);
-            assert_eq!(found, Some(wanted([&pairs, &[]])));
-        }
-    }
-
-    /// The judge of the test above rejects two swapped contacts.
-    #[test]
-    fn another_order_is_noticed() {
-        let all = hits(8, 100);
-        let mut right = wanted([&all, &[]]);
-        right.swap(40, 41);
-        assert!(right != wanted([&all, &[]]));
-    }
-
-    #[test]
-    fn more_contacts_than_room_are_counted() {
-        for device in machines() {
-            let all = hits(9, 300);
-            assert_eq!(ordered(&device, [&all[..100], &all[100..]], 299), (None, 300));
-            assert_eq!(ordered(&device, [&all[..], &[]], 0), (None, 300));
-        }
-    }
-
-    /// Features of 2 x 31 bits leave no bits for places: the host orders.
-    #[test]
-    fn names_too_long_for_a_word_stay_unordered() {
-        let device = machines().remove(0);
-        let end = Offsets { vertex: 1 << 31, triangle: 5, edge: 9 };
-        let layout = Layout { starts: vec![Offsets::default(), end], ..Layout::default() };
-        let mut order = Order::<Pair>::new(&device, &layout, 16).expect("memory");
-        let mut list = List::new(&device, "contacts", counter::CONTACTS, 1).expect("memory");
-        let mut counts = Counts::default();
-        list.put(&[Pair { a: 1, b: 2 }], &mut counts).expect("written");
-        let counters = FrameCounters::new(&device).expect("memory");
-        let launches = device.launches();
-        order.run(&device, &list, None, counters.counters()).expect("nothing to do");
-        assert_eq!(device.launches(), launches);
-        assert!(order.view(&counts, &[&list]).expect("read").is_none());
-    }
+/// Returns the first vertex, triangle and edge of a body, in the order of [`Feature`].
+fn starts(at: &Offsets) -> [u32; Feature::COUNT as usize] {
+    [at.vertex, at.triangle, at.edge]
 }

@@ -44,8 +44,8 @@ pub const EDGES: &str = "end points of each edge";
 pub const FACETS: &str = "edges of each triangle, and the features that it owns";
 /// The smallest time.
 pub const EARLIEST: &str = "the earliest time of contact";
-/// Keys of contacts.
-pub const ORDER: &str = "keys of the contacts, and their counts";
+/// Bins, slots and keys of contacts.
+pub const ORDER: &str = "bins, slots and keys of the contacts";
 /// Addresses and poses in memory of the caller, and checks of its numbers.
 pub const DEVICE_ARRAYS: &str = "addresses of the caller's memory, and checks of its numbers";
 /// Status of the answer, for the caller's kernels.

@@ -14,7 +14,7 @@ mod submit;
 #[cfg(test)]
 mod submitted;
 
-pub use found::{Found, Hits, Listed, in_order};
+pub use found::{Found, Hits, Listed};
 pub use submit::{Submits, not_prepared};
 
 use super::broad::{CandidateSearch, Share};

@@ -1,7 +1,7 @@
 //! Queries, each with a type of its own for the rows of its answer.
 
 use super::{Continuous, Discrete, Distance, Earliest, Near, Query};
-use crate::contacts::{Contact, FirstContact, NearPair, NearestTriangles, Rows, TrianglePair};
+use crate::contacts::{Contact, FirstContact, NearPair, NearestTriangles, RowList, Rows, TrianglePair};
 
 mod sealed {
     pub trait Sealed {}
@@ -11,10 +11,10 @@ mod sealed {
 ///
 /// | query | rows |
 /// | --- | --- |
-/// | [`Discrete`] | `Vec<`[`TrianglePair`]`>` |
-/// | [`Continuous`] | `Vec<`[`Contact`]`>` |
+/// | [`Discrete`] | [`RowList`]`<`[`TrianglePair`]`>` |
+/// | [`Continuous`] | [`RowList`]`<`[`Contact`]`>` |
 /// | [`Earliest`] | `Option<`[`FirstContact`]`>` |
-/// | [`Near`] | `Vec<`[`NearPair`]`>` |
+/// | [`Near`] | [`RowList`]`<`[`NearPair`]`>` |
 /// | [`Distance`] | `Option<`[`NearestTriangles`]`>` |
 /// | [`Query`] | [`Rows`]: of any of these |
 pub trait TypedQuery: Copy + Into<Query> + sealed::Sealed {
@@ -46,11 +46,11 @@ macro_rules! rows {
 }
 
 rows! {
-    Discrete => Vec<TrianglePair>, Rows::Pairs(pairs) => pairs, Vec::new(), _is_undecided;
-    Continuous => Vec<Contact>, Rows::Contacts(contacts) => contacts, Vec::new(), _is_undecided;
+    Discrete => RowList<TrianglePair>, Rows::Pairs(pairs) => pairs, RowList::default(), _is_undecided;
+    Continuous => RowList<Contact>, Rows::Contacts(contacts) => contacts, RowList::default(), _is_undecided;
     Earliest => Option<FirstContact>,
         Rows::Earliest(toi) => toi.map(|toi| FirstContact { toi, is_undecided }), None, is_undecided;
-    Near => Vec<NearPair>, Rows::Near(pairs) => pairs, Vec::new(), _is_undecided;
+    Near => RowList<NearPair>, Rows::Near(pairs) => pairs, RowList::default(), _is_undecided;
     Distance => Option<NearestTriangles>, Rows::Distance(nearest) => nearest, None, _is_undecided;
 }
 

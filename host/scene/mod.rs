@@ -23,6 +23,7 @@ use std::fmt;
 /// Number of a body in a scene; it stays with the body until that is removed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(transparent))]
+#[repr(transparent)]
 pub struct BodyId(pub(crate) u32);
 
 impl BodyId {

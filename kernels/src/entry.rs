@@ -350,13 +350,21 @@ kernels! {
     narrow_witness_f64: nearest::witness::<f64, B>, [LeastArgs<f64>], RUNG, 0;
     narrow_nearest_f32: nearest::nearest::<f32, B>, [LeastArgs<f32>], NARROW, 0;
     narrow_nearest_f64: nearest::nearest::<f64, B>, [LeastArgs<f64>], NARROW, 0;
-    order_keys_pair: order::keys::<Pair, B>, [OrderArgs<Pair>], WIDE, 0;
-    order_keys_hit: order::keys::<Hit, B>, [OrderArgs<Hit>], WIDE, 0;
-    order_keys_near: order::keys::<NearHit, B>, [OrderArgs<NearHit>], WIDE, 0;
+    order_count_pair: order::count::count::<Pair, B>, [OrderArgs<Pair>], WIDE, 0;
+    order_count_hit: order::count::count::<Hit, B>, [OrderArgs<Hit>], WIDE, 0;
+    order_count_near: order::count::count::<NearHit, B>, [OrderArgs<NearHit>], WIDE, 0;
+    order_sums: order::starts::sums, [Bins], WIDE, 0;
+    order_starts: order::starts::starts, [Bins], WIDE, 0;
+    order_place_pair: order::rank::place::<Pair, B>, [OrderArgs<Pair>], WIDE, 0;
+    order_place_hit: order::rank::place::<Hit, B>, [OrderArgs<Hit>], WIDE, 0;
+    order_place_near: order::rank::place::<NearHit, B>, [OrderArgs<NearHit>], WIDE, 0;
+    order_merge_pair: order::rank::merge::<Pair, B>, [OrderArgs<Pair>], WIDE, 0;
+    order_merge_hit: order::rank::merge::<Hit, B>, [OrderArgs<Hit>], WIDE, 0;
+    order_merge_near: order::rank::merge::<NearHit, B>, [OrderArgs<NearHit>], WIDE, 0;
+    order_rank_pair: order::rank::rank::<Pair, B>, [OrderArgs<Pair>], WIDE, 0;
+    order_rank_hit: order::rank::rank::<Hit, B>, [OrderArgs<Hit>], WIDE, 0;
+    order_rank_near: order::rank::rank::<NearHit, B>, [OrderArgs<NearHit>], WIDE, 0;
     sort_pass: sort::pass, [SortArgs], WIDE, sort::shared_bytes(WIDE);
-    order_gather_pair: order::gather::<Pair, B>, [OrderArgs<Pair>], WIDE, 0;
-    order_gather_hit: order::gather::<Hit, B>, [OrderArgs<Hit>], WIDE, 0;
-    order_gather_near: order::gather::<NearHit, B>, [OrderArgs<NearHit>], WIDE, 0;
     status_frame: status::status, [StatusArgs], NARROW, 0;
 }
 

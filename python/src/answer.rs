@@ -11,8 +11,9 @@ use pyo3::prelude::*;
 
 /// Base class of all answers.
 ///
-/// Rows are in canonical order, the same on every machine. Columns are read-only numpy arrays: copy
-/// one before you write to it.
+/// Rows are in canonical order, the same on every machine. Columns are read-only numpy arrays. Most
+/// are fields of the rows, in their memory: copy one before you write to it, or to have its numbers
+/// side by side.
 #[pyclass(module = "nearmiss", frozen, subclass)]
 pub struct Answer {
     pub contacts: nearmiss::Contacts,

@@ -1,6 +1,7 @@
 //! The answer classes, one for each class of queries.
 
 use crate::answer::Answer;
+use crate::columns;
 use crate::host::rows;
 use nearmiss::Rows;
 use nearmiss::contacts::NearestTriangles as Nearest;
@@ -10,7 +11,7 @@ use pyo3::prelude::*;
 
 type Column<'py> = PyResult<Bound<'py, PyAny>>;
 
-/// A column of one number a row.
+/// A column of numbers that rows do not have.
 fn numbers<'py, T: Element>(
     answer: &Bound<'py, Answer>,
     name: &'static str,
@@ -20,14 +21,20 @@ fn numbers<'py, T: Element>(
     own.columns.get(py, name, || Ok(PyArray1::from_vec(py, of(&own.contacts.rows))))
 }
 
-/// A column of several numbers a row.
-fn several<'py, T: Element + Copy + bytemuck::Pod, const N: usize>(
+/// A column of a field: one number a row, or several.
+fn field<'py, T, E: Element, const N: usize>(
     answer: &Bound<'py, Answer>,
     name: &'static str,
-    of: impl FnOnce(&Rows) -> Vec<[T; N]>,
+    rows: fn(&Rows) -> &[T],
+    of: fn(&T) -> *const E,
 ) -> Column<'py> {
     let (py, own) = (answer.py(), answer.get());
-    own.columns.get(py, name, || Ok(rows(py, &of(&own.contacts.rows))))
+    own.columns.get(py, name, || columns::field::<T, E, N>(py, &own.contacts.rows, rows, of))
+}
+
+/// The bodies of a row, as numbers: a `BodyId` is one.
+fn numbers_of(bodies: &[BodyId; 2]) -> *const u32 {
+    bodies.as_ptr().cast()
 }
 
 fn indices(bodies: [BodyId; 2]) -> [u32; 2] {
@@ -45,14 +52,13 @@ impl TrianglePairs {
     /// (k, 2) uint32: bodies of both triangles, the smaller number first.
     #[getter]
     fn bodies<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
-        let of = |rows: &Rows| rows.pairs().iter().map(|pair| indices(pair.bodies)).collect();
-        several(slf.as_super(), "bodies", of)
+        field::<_, u32, 2>(slf.as_super(), "bodies", Rows::pairs, |pair| numbers_of(&pair.bodies))
     }
 
     /// (k, 2) uint32: both triangles, by their indices in their bodies.
     #[getter]
     fn triangles<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
-        several(slf.as_super(), "triangles", Rows::triangles)
+        field::<_, u32, 2>(slf.as_super(), "triangles", Rows::pairs, |pair| pair.triangles.as_ptr())
     }
 
     /// Whether no two triangles share a point.
@@ -79,50 +85,51 @@ impl Contacts {
     /// (k,) uint8: which features meet, see Kind.
     #[getter]
     fn kind<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
-        let of = |rows: &Rows| rows.contacts().iter().map(|contact| contact.kind as u8).collect();
-        numbers(slf.as_super(), "kind", of)
+        field::<_, u8, 1>(slf.as_super(), "kind", Rows::contacts, |contact| (&raw const contact.kind).cast())
     }
 
     /// (k, 2) uint32: body of feature a, body of feature b.
     #[getter]
     fn bodies<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
-        let of = |rows: &Rows| rows.contacts().iter().map(|contact| indices(contact.bodies)).collect();
-        several(slf.as_super(), "bodies", of)
+        field::<_, u32, 2>(slf.as_super(), "bodies", Rows::contacts, |contact| numbers_of(&contact.bodies))
     }
 
     /// (k,) uint32: the vertex, or the first edge, by its index in its body.
     #[getter]
     fn feature_a<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
-        let of = |rows: &Rows| rows.contacts().iter().map(|contact| contact.feature_a).collect();
-        numbers(slf.as_super(), "feature_a", of)
+        field::<_, u32, 1>(slf.as_super(), "feature_a", Rows::contacts, |contact| {
+            &raw const contact.feature_a
+        })
     }
 
     /// (k,) uint32: the face, or the second edge, by its index in its body.
     #[getter]
     fn feature_b<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
-        let of = |rows: &Rows| rows.contacts().iter().map(|contact| contact.feature_b).collect();
-        numbers(slf.as_super(), "feature_b", of)
+        field::<_, u32, 1>(slf.as_super(), "feature_b", Rows::contacts, |contact| {
+            &raw const contact.feature_b
+        })
     }
 
     /// (k,) float64 in [0, 1]: lower bound of the time of impact. No contact is earlier.
     #[getter]
     fn toi<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
-        let of = |rows: &Rows| rows.contacts().iter().map(|contact| contact.toi).collect();
-        numbers(slf.as_super(), "toi", of)
+        field::<_, f64, 1>(slf.as_super(), "toi", Rows::contacts, |contact| &raw const contact.toi)
     }
 
     /// (k,) float64 in [toi, 1]: upper bound of the time of impact. Certified pairs have met by it.
     #[getter]
     fn toi_upper<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
-        let of = |rows: &Rows| rows.contacts().iter().map(|contact| contact.toi_upper).collect();
-        numbers(slf.as_super(), "toi_upper", of)
+        field::<_, f64, 1>(slf.as_super(), "toi_upper", Rows::contacts, |contact| {
+            &raw const contact.toi_upper
+        })
     }
 
     /// (k,) uint8: certainty of the row, see Status.
     #[getter]
     fn status<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
-        let of = |rows: &Rows| rows.contacts().iter().map(|contact| contact.status as u8).collect();
-        numbers(slf.as_super(), "status", of)
+        field::<_, u8, 1>(slf.as_super(), "status", Rows::contacts, |contact| {
+            (&raw const contact.status).cast()
+        })
     }
 
     /// Smallest `toi`; None without a row.
@@ -201,29 +208,25 @@ impl NearPairs {
     /// (k,) uint8: which features are near, see Kind.
     #[getter]
     fn kind<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
-        let of = |rows: &Rows| rows.near().iter().map(|pair| pair.kind as u8).collect();
-        numbers(slf.as_super(), "kind", of)
+        field::<_, u8, 1>(slf.as_super(), "kind", Rows::near, |pair| (&raw const pair.kind).cast())
     }
 
     /// (k, 2) uint32: body of feature a, body of feature b.
     #[getter]
     fn bodies<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
-        let of = |rows: &Rows| rows.near().iter().map(|pair| indices(pair.bodies)).collect();
-        several(slf.as_super(), "bodies", of)
+        field::<_, u32, 2>(slf.as_super(), "bodies", Rows::near, |pair| numbers_of(&pair.bodies))
     }
 
     /// (k,) uint32: the vertex, or the first edge, by its index in its body.
     #[getter]
     fn feature_a<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
-        let of = |rows: &Rows| rows.near().iter().map(|pair| pair.feature_a).collect();
-        numbers(slf.as_super(), "feature_a", of)
+        field::<_, u32, 1>(slf.as_super(), "feature_a", Rows::near, |pair| &raw const pair.feature_a)
     }
 
     /// (k,) uint32: the face, or the second edge, by its index in its body.
     #[getter]
     fn feature_b<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
-        let of = |rows: &Rows| rows.near().iter().map(|pair| pair.feature_b).collect();
-        numbers(slf.as_super(), "feature_b", of)
+        field::<_, u32, 1>(slf.as_super(), "feature_b", Rows::near, |pair| &raw const pair.feature_b)
     }
 
     /// (k,) float64: distances of the features, in the unit of the vertices.
@@ -239,8 +242,9 @@ impl NearPairs {
     /// (k,) float64: squares of the distances.
     #[getter]
     fn squared_distances<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
-        let of = |rows: &Rows| rows.near().iter().map(|pair| pair.squared_distance).collect();
-        numbers(slf.as_super(), "squared_distances", of)
+        field::<_, f64, 1>(slf.as_super(), "squared_distances", Rows::near, |pair| {
+            &raw const pair.squared_distance
+        })
     }
 
     /// (k, 4) float64: weights of the four vertices in the nearest points.
@@ -249,14 +253,15 @@ impl NearPairs {
     /// ends of edge a and of edge b. The weights of each feature sum to 1.
     #[getter]
     fn weights<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
-        several(slf.as_super(), "weights", |rows| rows.near().iter().map(|pair| pair.weights).collect())
+        let (py, own) = (slf.py(), slf.as_super().get());
+        let weights = || own.contacts.near().iter().map(|pair| pair.weights()).collect::<Vec<_>>();
+        own.columns.get(py, "weights", || Ok(rows(py, &weights())))
     }
 
     /// (k,) uint8: the nearest parts of both features, see Closest.
     #[getter]
     fn closest<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
-        let of = |rows: &Rows| rows.near().iter().map(|pair| pair.closest as u8).collect();
-        numbers(slf.as_super(), "closest", of)
+        field::<_, u8, 1>(slf.as_super(), "closest", Rows::near, |pair| (&raw const pair.closest).cast())
     }
 
     /// Smallest of the distances; None without a row.

@@ -1,5 +1,6 @@
 """Answers: known ones, and those of judges that share nothing with what they judge."""
 
+import gc
 import itertools
 from fractions import Fraction
 
@@ -306,3 +307,22 @@ def test_a_frame_in_motion_has_two_ends_and_a_far_turn_a_caveat():
         assert len(found.caveats) == 1 and "body 0 turns by 90.0 degrees" in found.caveats[0]
         assert not any("turns" in caveat for caveat in detector.step({}, query).caveats)
         assert detector.tolerance == detector.largest_tolerance > 0
+
+
+def test_columns_are_fields_of_the_rows_and_outlive_the_answer():
+    vertices, faces = soup(60, 0, 0.6)
+    answer = nm.Detector(nm.Body(vertices, faces)).query(nm.Near(0.1))
+    columns = {name: getattr(answer, name) for name in ("kind", "bodies", "feature_a", "squared_distances", "closest")}
+    row = columns["kind"].strides[0]
+    assert len(answer) > 20 and row == 48 and {column.strides[0] for column in columns.values()} == {row}
+    starts = [column.__array_interface__["data"][0] for column in columns.values()]
+    assert max(starts) - min(starts) < row, "fields of one row"
+    copies = {name: column.copy() for name, column in columns.items()}
+    del answer
+    gc.collect()
+    others = [np.full(1000, 7.0) for _ in range(1000)]
+    assert len(others) == 1000 and all((columns[name] == copies[name]).all() for name in columns)
+    with pytest.raises(ValueError):
+        columns["kind"].flags.writeable = True
+    none = nm.Detector(nm.Body(vertices[:3], faces[:1])).query(nm.Discrete())
+    assert none.triangles.shape == none.bodies.shape == (0, 2)

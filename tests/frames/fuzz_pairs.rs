@@ -166,7 +166,7 @@ fn a_little_nearer(answer: &mut Rows) {
 /// A lie: what is only near is certain.
 fn all_certified(answer: &mut Rows) {
     if let Rows::Contacts(all) = answer {
-        for contact in all {
+        for contact in all.iter_mut() {
             (contact.status, contact.toi, contact.toi_upper) =
                 (nearmiss::contacts::Status::Certified, 0.0, 0.0);
         }

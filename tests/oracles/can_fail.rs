@@ -246,7 +246,7 @@ fn the_hash_notices_every_fault_of_a_list_of_pairs() {
     ];
     for (what, fault) in faults {
         hashes_differ(&contacts, what, |answer| match answer {
-            Rows::Pairs(pairs) => fault(pairs),
+            Rows::Pairs(pairs) => fault(pairs.to_mut()),
             other => panic!("{other:?}"),
         });
     }
@@ -271,7 +271,7 @@ fn the_hash_notices_every_fault_of_a_list_of_contacts() {
     ];
     for (what, fault) in faults {
         hashes_differ(&contacts, what, |answer| match answer {
-            Rows::Contacts(all) => fault(all),
+            Rows::Contacts(all) => fault(all.to_mut()),
             other => panic!("{other:?}"),
         });
     }

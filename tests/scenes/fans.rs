@@ -138,7 +138,7 @@ fn agree(
     });
     let (_, oracle, scene) = all.next().expect("the oracle");
     let wanted = match query == Query::discrete() {
-        true => Rows::Pairs(without_adjacent(&oracle, &scene)),
+        true => Rows::Pairs(without_adjacent(&oracle, &scene).into()),
         false => oracle.rows.clone(),
     };
     let mut count = 0;

@@ -129,7 +129,7 @@ fn an_answer_does_not_depend_on_what_was_asked_before() {
 fn an_answer_that_is_not_its_own_is_named() {
     let forget = |answer: &mut Contacts| {
         if let nearmiss::Rows::Near(pairs) = &mut answer.rows {
-            pairs.pop();
+            pairs.to_mut().pop();
         }
     };
     let fault = (0..4).find_map(|seed| life(seed, forget).1).expect("a difference");

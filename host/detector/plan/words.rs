@@ -17,7 +17,7 @@ pub const STAGES: [(&str, &str); 9] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 58] = [
+const KERNELS: [(&str, &str); 62] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
     ("place", "poses applied, uploads put in place, other bodies at rest"),
     ("construct_bounds", "the box of each body's centres"),
@@ -73,8 +73,12 @@ const KERNELS: [(&str, &str); 58] = [
     ("narrow_witness", "the first pair with the least distance"),
     ("narrow_nearest", "nearest points of that pair"),
     ("narrow_near", "distances of feature pairs"),
-    ("order_keys", "a key for each contact"),
-    ("order_gather", "contacts in the order of their keys"),
+    ("order_count", "contacts of each first feature"),
+    ("order_sums", "contacts of each tile of bins"),
+    ("order_starts", "the first contact of each bin"),
+    ("order_place", "a key for each contact, in its bin"),
+    ("order_merge", "runs of keys in long bins"),
+    ("order_rank", "rows in the order of their keys"),
     ("status_frame", "count and capacity of each list"),
 ];
 

@@ -4,14 +4,18 @@ mod code;
 mod context;
 mod driver;
 mod graph;
+mod kept;
 mod memory;
 mod module;
+mod reads;
 mod staging;
 mod stream;
 mod types;
 
 pub use graph::Graph;
+pub use kept::Kept;
 pub use memory::Memory;
+pub use reads::First;
 pub use staging::Known;
 
 use super::replay::{Act, Listing};
@@ -19,6 +23,7 @@ use crate::error::Error;
 use code::Code;
 use context::{Bound, Context, Gpu};
 use driver::{Refusal, refused};
+use kept::Blocks;
 use module::Function;
 use nearmiss_kernels::entry::Entry as Kernel;
 use staging::Staging;
@@ -43,6 +48,8 @@ pub struct Cuda {
     processors: u32,
     resident_lanes: u32,
     staging: Mutex<Staging>,
+    /// Memory of answers.
+    blocks: Box<Mutex<Blocks>>,
     /// Counts changes of the GPU's memory: bytes that were read ahead are valid until the next one.
     epoch: AtomicU64,
     code: Code,
@@ -122,6 +129,7 @@ impl Cuda {
             processors,
             resident_lanes: processors * lanes,
             staging: Mutex::new(staging),
+            blocks: Box::new(Mutex::new(Blocks::new(&context))),
             epoch: AtomicU64::new(0),
             code,
             functions: Mutex::default(),
@@ -197,36 +205,6 @@ impl Cuda {
     pub fn write(&self, memory: &mut Memory, bytes: &[u8]) -> Result<(), Error> {
         self.changes();
         locked(&self.staging).write(&self.bind()?, &self.stream, memory, bytes)
-    }
-
-    /// Copies bytes from the GPU through page-locked memory; waits for all work before, unless they
-    /// were read ahead.
-    pub fn read(&self, memory: &Memory, bytes: &mut [u8]) -> Result<(), Error> {
-        if let Some(known) = self.known(memory, bytes.len()) {
-            bytes.copy_from_slice(known.bytes());
-            return Ok(());
-        }
-        let gpu = self.bind()?;
-        let mut staging = locked(&self.staging);
-        if !staging.is_looked_at() {
-            return staging.read(&gpu, &self.stream, memory, bytes);
-        }
-        drop(staging);
-        // The host still reads other bytes that were read ahead, so this is a separate copy.
-        self.stream.wait(&gpu).map_err(refused("waiting for the GPU"))?;
-        memory.read_now(&gpu, bytes).map_err(refused("copying from the GPU"))
-    }
-
-    /// Copies the first bytes of several buffers with one wait, if they fit into page-locked
-    /// memory. The next reads find them there.
-    pub fn read_ahead(&self, all: &[(&Memory, usize)]) -> Result<(), Error> {
-        let epoch = self.epoch.load(Ordering::Relaxed);
-        locked(&self.staging).read_ahead(&self.bind()?, &self.stream, epoch, all)
-    }
-
-    /// The first bytes of a buffer, if they were read ahead and nothing has changed since.
-    pub fn known(&self, memory: &Memory, bytes: usize) -> Option<Known> {
-        locked(&self.staging).known(self.epoch.load(Ordering::Relaxed), memory.addr(), bytes)
     }
 
     /// Starts a kernel. If only launches are allowed, its module must be loaded already.

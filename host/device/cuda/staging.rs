@@ -149,8 +149,8 @@ impl Staging {
         if bytes.is_empty() { self.wait(gpu, stream) } else { Ok(()) }
     }
 
-    /// Copies the first bytes of several buffers from the GPU with one wait, if they fit. They are
-    /// valid for that epoch.
+    /// Copies the first bytes of several buffers from the GPU with one wait, if they fit; waits for
+    /// all work before in any case. They are valid for that epoch.
     pub fn read_ahead(
         &mut self,
         gpu: &Bound,
@@ -162,7 +162,7 @@ impl Staging {
         self.ahead.clear();
         let sum: usize = all.iter().map(|(_, bytes)| bytes.next_multiple_of(ALIGN)).sum();
         if sum > MOST {
-            return Ok(());
+            return self.wait(gpu, stream);
         }
         // Space for all at once, so that no copy takes the space of another.
         let whole = self.room(gpu, stream, sum)?;

@@ -25,15 +25,15 @@ pub struct AnswerLists {
 }
 
 impl AnswerLists {
-    /// Returns the lists of each kind, or the one that they were ordered into.
+    /// Returns the lists of each kind, or the one that they are ordered into for a submission.
     pub fn of<T: Ordered>(entries: Entries, lists: &[&List<T>], order: Option<&Order<T>>) -> AnswerLists {
         let place = |list: &List<T>| (list.entries().addr(), list.capacity());
-        let order = order.filter(|order| order.fits());
+        let order = order.and_then(Order::contacts);
         AnswerLists {
             entries,
             is_ordered: order.is_some(),
             lists: match order {
-                Some(order) => vec![place(&order.list)],
+                Some(contacts) => vec![(contacts.addr(), contacts.len() as usize)],
                 None => lists.iter().map(|list| place(list)).collect(),
             },
             counters: lists.iter().map(|list| list.counter()).collect(),

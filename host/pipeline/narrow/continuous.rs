@@ -11,12 +11,13 @@ use crate::error::Error;
 use crate::pipeline::below_precision::{self, BelowPrecision};
 use crate::pipeline::counts::Counts;
 use crate::pipeline::list::{GrowableOutput, List};
-use crate::pipeline::order::{Order, Ordering};
+use crate::pipeline::order::{Order, Ordering, Unordered};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
 use crate::pipeline::{launch, purpose};
 use crate::query::{self, Certified, ContinuousSolver, Query};
 use crate::scene::Body;
+use nearmiss_kernels::abi::rows::code;
 use nearmiss_kernels::abi::{
     BodyTolerance, Counter, CullArgs, Hit, Pair, SolveArgs, Span, counter, earliest,
 };
@@ -152,6 +153,11 @@ impl ContinuousNarrow {
             None => &[Step::Start, Step::Features, Step::Solve],
         };
         if self.start.is_some() { all } else { &all[1..] }
+    }
+
+    /// Returns whether its contacts are proven.
+    fn is_certified(&self) -> bool {
+        self.solver.certified().is_some()
     }
 
     /// Returns the time that a sample has found, if it bounds the other pairs.
@@ -344,29 +350,31 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
         self.earliest.is_none().then_some(&mut self.ordered as &mut dyn Ordering)
     }
 
-    fn order(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
+    fn order(&mut self, given: &NarrowContext<R>, is_submitted: bool) -> Result<(), Error> {
+        let decided = if self.is_certified() { code::CERTIFIED } else { code::UNVERIFIED };
         let Some(order) = &mut self.ordered else { return Ok(()) };
-        order.run(given.device, &self.vf_hits, Some(&self.ee_hits), given.counters)
+        let (first, second) = (&self.vf_hits, Some(&self.ee_hits));
+        let unordered = Unordered { first, second, decided, is_submitted };
+        order.run(given.device, &unordered, given.counters)
     }
 
     fn ahead(&self, last: &Counts) -> Vec<Ahead<'_>> {
-        let mut all = Hits::ahead([&self.vf_hits, &self.ee_hits], self.ordered.as_ref(), last);
+        let mut all = Hits::ahead(&[&self.vf_hits, &self.ee_hits], self.ordered.as_ref(), last);
         all.extend(self.earliest.as_ref().map(|earliest| earliest.ahead(earliest.len())));
         all
     }
 
-    fn gather(&self, counters: &Counts) -> Result<(Listed<'_>, bool), Error> {
+    fn gather(&self, counters: &Counts) -> Result<Listed<'_>, Error> {
         if let Some(words) = &self.earliest {
             let first = earliest::of_key(words.read(words.len())?[earliest::KEY as usize]);
             let below_precision = self.below_precision == Some(BelowPrecision::Unlisted);
             let undecided = first.is_some_and(|(_, undecided)| undecided);
             let toi = first.map(|(toi, _)| toi);
-            return Ok((Listed::Earliest { toi, undecided, below_precision }, false));
+            return Ok(Listed::Earliest { toi, undecided, below_precision });
         }
         let lists = [&self.vf_hits, &self.ee_hits];
-        let (hits, ordered) = Hits::of(lists, self.ordered.as_ref(), counters)?;
-        let certified = self.solver.certified().is_some();
-        Ok((Listed::Hits { hits, certified }, ordered))
+        let hits = Hits::of(&lists, self.ordered.as_ref(), counters)?;
+        Ok(Listed::Hits { hits, certified: self.is_certified() })
     }
 
     fn answer(&self, features: &Features) -> AnswerLists {

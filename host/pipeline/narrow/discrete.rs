@@ -7,9 +7,9 @@ use crate::error::Error;
 use crate::pipeline::counts::Counts;
 use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List};
-use crate::pipeline::order::{Order, Ordering};
+use crate::pipeline::order::{Order, Ordering, Unordered};
 use crate::pipeline::precision::Precision;
-use crate::pipeline::typed::{Listed, in_order};
+use crate::pipeline::typed::{Hits, Listed};
 use crate::query::TriangleTest;
 use nearmiss_kernels::abi::{DiscreteArgs, DiscreteFlags, Output, Pair, counter};
 use nearmiss_kernels::stage::narrow::certain::LANES_A_PAIR;
@@ -114,20 +114,18 @@ impl<R: Precision> Narrow<R> for DiscreteNarrow {
         Some(&mut self.ordered)
     }
 
-    fn order(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
+    fn order(&mut self, given: &NarrowContext<R>, is_submitted: bool) -> Result<(), Error> {
         let Some(order) = &mut self.ordered else { return Ok(()) };
-        order.run(given.device, &self.contacts, None, given.counters)
+        let unordered = Unordered { first: &self.contacts, second: None, decided: 0, is_submitted };
+        order.run(given.device, &unordered, given.counters)
     }
 
     fn ahead(&self, last: &Counts) -> Vec<Ahead<'_>> {
-        vec![self.ordered.as_ref().map_or(&self.contacts, |order| &order.list).ahead(last)]
+        Hits::ahead(&[&self.contacts], self.ordered.as_ref(), last)
     }
 
-    fn gather(&self, counters: &Counts) -> Result<(Listed<'_>, bool), Error> {
-        let ordered = in_order(self.ordered.as_ref(), counters, &[&self.contacts])?;
-        let is_ordered = ordered.is_some();
-        let pairs = ordered.map_or_else(|| self.contacts.view(counters), Ok)?;
-        Ok((Listed::Pairs(pairs), is_ordered))
+    fn gather(&self, counters: &Counts) -> Result<Listed<'_>, Error> {
+        Ok(Listed::Pairs(Hits::of(&[&self.contacts], self.ordered.as_ref(), counters)?))
     }
 
     fn answer(&self, _: &Features) -> AnswerLists {

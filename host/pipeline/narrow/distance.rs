@@ -101,7 +101,7 @@ impl<R: Precision> Narrow<R> for DistanceNarrow {
         None
     }
 
-    fn order(&mut self, _: &NarrowContext<R>) -> Result<(), Error> {
+    fn order(&mut self, _: &NarrowContext<R>, _: bool) -> Result<(), Error> {
         Ok(())
     }
 
@@ -109,8 +109,8 @@ impl<R: Precision> Narrow<R> for DistanceNarrow {
         vec![self.nearest.ahead(last)]
     }
 
-    fn gather(&self, counters: &Counts) -> Result<(Listed<'_>, bool), Error> {
-        Ok((Listed::Nearest(self.nearest.view(counters)?), true))
+    fn gather(&self, counters: &Counts) -> Result<Listed<'_>, Error> {
+        Ok(Listed::Nearest(self.nearest.view(counters)?))
     }
 
     fn answer(&self, _: &Features) -> AnswerLists {

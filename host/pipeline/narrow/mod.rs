@@ -108,25 +108,26 @@ pub trait Narrow<R: Precision>: Send {
         self.ordering().map_or(Ok(()), |ordering| ordering.begin(device, layout, room))
     }
 
-    /// Returns the list that the device has ordered; none if the host orders.
-    fn ordered(&mut self) -> Option<&mut dyn GrowableOutput> {
-        self.ordering().and_then(Ordering::list)
+    /// Returns the lists of the device's ordering; none if the host orders.
+    fn ordered(&mut self) -> Vec<&mut dyn GrowableOutput> {
+        self.ordering().map_or(Vec::new(), Ordering::lists)
     }
 
-    /// Launches the ordering, if the device orders.
+    /// Launches the ordering, if the device orders. `is_submitted` is whether the caller's kernels
+    /// read contacts in order.
     ///
     /// # Errors
     /// Device errors.
-    fn order(&mut self, given: &NarrowContext<R>) -> Result<(), Error>;
+    fn order(&mut self, given: &NarrowContext<R>, is_submitted: bool) -> Result<(), Error>;
 
     /// Returns the memory that [`Narrow::gather`] will read, by the counters of the last frame.
     fn ahead(&self, last: &Counts) -> Vec<Ahead<'_>>;
 
-    /// Returns the results, by the frame's counters, and whether they are in canonical order.
+    /// Returns the results, by the frame's counters.
     ///
     /// # Errors
     /// Device errors.
-    fn gather(&self, counters: &Counts) -> Result<(Listed<'_>, bool), Error>;
+    fn gather(&self, counters: &Counts) -> Result<Listed<'_>, Error>;
 
     /// Returns the place of the answer.
     fn answer(&self, features: &Features) -> AnswerLists;

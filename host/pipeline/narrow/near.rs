@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::pipeline::counts::Counts;
 use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List};
-use crate::pipeline::order::{Order, Ordering};
+use crate::pipeline::order::{Order, Ordering, Unordered};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
 use crate::query::Query;
@@ -110,18 +110,20 @@ impl<R: Precision> Narrow<R> for NearNarrow {
         Some(&mut self.ordered)
     }
 
-    fn order(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
+    fn order(&mut self, given: &NarrowContext<R>, is_submitted: bool) -> Result<(), Error> {
         let Some(order) = &mut self.ordered else { return Ok(()) };
-        order.run(given.device, &self.vf_hits, Some(&self.ee_hits), given.counters)
+        let (first, second) = (&self.vf_hits, Some(&self.ee_hits));
+        let unordered = Unordered { first, second, decided: 0, is_submitted };
+        order.run(given.device, &unordered, given.counters)
     }
 
     fn ahead(&self, last: &Counts) -> Vec<Ahead<'_>> {
-        Hits::ahead([&self.vf_hits, &self.ee_hits], self.ordered.as_ref(), last)
+        Hits::ahead(&[&self.vf_hits, &self.ee_hits], self.ordered.as_ref(), last)
     }
 
-    fn gather(&self, counters: &Counts) -> Result<(Listed<'_>, bool), Error> {
-        let (hits, ordered) = Hits::of([&self.vf_hits, &self.ee_hits], self.ordered.as_ref(), counters)?;
-        Ok((Listed::Near(hits), ordered))
+    fn gather(&self, counters: &Counts) -> Result<Listed<'_>, Error> {
+        let lists = [&self.vf_hits, &self.ee_hits];
+        Ok(Listed::Near(Hits::of(&lists, self.ordered.as_ref(), counters)?))
     }
 
     fn answer(&self, features: &Features) -> AnswerLists {

@@ -2,20 +2,21 @@
 
 use super::query::QueryMemory;
 use super::scene::SceneMemory;
-use crate::device::{Ahead, View};
+use crate::device::{Ahead, Kept, View};
 use crate::error::Error;
 use crate::pipeline::counts::Counts;
 use crate::pipeline::list::List;
 use crate::pipeline::order::{Order, Ordered};
 use crate::pipeline::placing::Seen;
 use crate::pipeline::precision::Precision;
-use bytemuck::Pod;
+#[cfg(doc)]
+use nearmiss_kernels::abi::Named;
 use nearmiss_kernels::abi::{Hit, NearHit, NearestHit, Pair};
 
 /// The kernels' results, still with the indices of the layout and, if possible, in device memory.
 pub enum Listed<'a> {
     /// Triangle pairs, discrete.
-    Pairs(View<'a, Pair>),
+    Pairs(Hits<'a, Pair>),
     /// Contacts in motion.
     Hits {
         /// The contacts.
@@ -42,8 +43,6 @@ pub enum Listed<'a> {
 pub struct Found<'a> {
     /// The kernels' results.
     pub listed: Listed<'a>,
-    /// Whether they are in canonical order already.
-    pub ordered: bool,
     /// The frame's counters.
     pub counters: Counts,
     /// How often a list was too short and part of the frame reran.
@@ -60,7 +59,7 @@ impl Found<'_> {
     /// Returns the bytes of the answer.
     pub fn bytes(&self) -> u64 {
         let bytes = match &self.listed {
-            Listed::Pairs(pairs) => size_of_val(&**pairs),
+            Listed::Pairs(pairs) => pairs.count() * size_of::<crate::contacts::TrianglePair>(),
             Listed::Hits { hits, .. } => hits.count() * size_of::<crate::Contact>(),
             Listed::Earliest { .. } | Listed::Nearest(_) => 0,
             Listed::Near(hits) => hits.count() * size_of::<crate::contacts::NearPair>(),
@@ -69,67 +68,41 @@ impl Found<'_> {
     }
 }
 
-/// Pairs of features, vertex/face and edge/edge: contacts in motion, or pairs within a distance.
-pub enum Hits<'a, T: Pod = Hit> {
-    /// One list of each kind.
-    Lists([View<'a, T>; 2]),
-    /// One list, vertex/face first, and the number of these.
-    One(View<'a, T>, usize),
+/// Contacts: pairs of triangles, or pairs of features in motion or within a distance.
+pub enum Hits<'a, T: Ordered = Hit> {
+    /// As the kernels of the narrow phase left them: one list of each kind.
+    Lists(Vec<View<'a, T>>),
+    /// Rows in canonical order, as [`Named::Row`].
+    Rows(Kept),
 }
 
 impl<'a, T: Ordered> Hits<'a, T> {
-    /// Returns the hits of two lists, in order if the device has ordered them; and whether it has.
+    /// Returns the hits of these lists, or their rows if the device has ordered them.
     ///
     /// # Errors
     /// Device errors.
-    pub fn of(
-        lists: [&'a List<T>; 2],
-        order: Option<&'a Order<T>>,
-        counters: &Counts,
-    ) -> Result<(Self, bool), Error> {
-        Ok(match in_order(order, counters, &lists)? {
-            Some(all) => (Hits::One(all, lists[0].demand(counters) as usize), true),
-            None => (Hits::Lists([lists[0].view(counters)?, lists[1].view(counters)?]), false),
+    pub fn of(lists: &[&'a List<T>], order: Option<&'a Order<T>>, counters: &Counts) -> Result<Self, Error> {
+        Ok(match order {
+            Some(order) => Hits::Rows(order.keep(counters)?),
+            None => Hits::Lists(lists.iter().map(|list| list.view(counters)).collect::<Result<_, _>>()?),
         })
     }
 
     /// Returns the memory to read ahead, by the counters of the last frame.
-    pub fn ahead(lists: [&'a List<T>; 2], order: Option<&'a Order<T>>, last: &Counts) -> Vec<Ahead<'a>> {
+    pub fn ahead(lists: &[&'a List<T>], order: Option<&'a Order<T>>, last: &Counts) -> Vec<Ahead<'a>> {
         match order {
-            Some(order) => vec![order.list.ahead(last)],
-            None => lists.map(|list| list.ahead(last)).into(),
+            Some(order) => vec![order.rows.ahead_to_keep(last)],
+            None => lists.iter().map(|list| list.ahead(last)).collect(),
         }
     }
-}
 
-impl<T: Pod> Hits<'_, T> {
     /// Returns the number of hits.
     fn count(&self) -> usize {
-        self.each().iter().map(|list| list.len()).sum()
-    }
-
-    /// Returns the hits of both kinds.
-    pub fn each(&self) -> [&[T]; 2] {
         match self {
-            Hits::Lists([vf, ee]) => [vf, ee],
-            Hits::One(all, vf) => {
-                let (vf, ee) = all.split_at(*vf);
-                [vf, ee]
-            }
+            Hits::Lists(lists) => lists.iter().map(|list| list.len()).sum(),
+            Hits::Rows(rows) => rows.bytes().len() / size_of::<T::Row>(),
         }
     }
-}
-
-/// Returns the contacts of the lists in canonical order, if the device has ordered them.
-///
-/// # Errors
-/// Device errors.
-pub fn in_order<'a, T: Ordered>(
-    order: Option<&'a Order<T>>,
-    counters: &Counts,
-    lists: &[&List<T>],
-) -> Result<Option<View<'a, T>>, Error> {
-    order.map_or(Ok(None), |order| order.view(counters, lists))
 }
 
 impl<R: Precision> QueryMemory<R> {
@@ -148,9 +121,9 @@ impl<R: Precision> QueryMemory<R> {
         counters: Counts,
         reruns: u64,
     ) -> Result<Found<'a>, Error> {
-        let (listed, ordered) = self.narrow.gather(&counters)?;
+        let listed = self.narrow.gather(&counters)?;
         let (front_dropped, seen) = (scene.broads[self.broad].phase.front_dropped(), scene.vertices.seen()?);
         let is_start_checked = self.narrow.checks_start();
-        Ok(Found { listed, ordered, counters, reruns, front_dropped, is_start_checked, seen })
+        Ok(Found { listed, counters, reruns, front_dropped, is_start_checked, seen })
     }
 }

@@ -134,7 +134,7 @@ impl<R: Precision> QueryMemory<R> {
             traverse: (of(Mark::Walks, Mark::Walked)? - balance).max(0.0),
             balance,
             narrow: of(Mark::Walked, Mark::Found)?,
-            order: if self.narrow.ordered().is_some() { ms(Mark::Found, Mark::Ordered)? } else { 0.0 },
+            order: if self.narrow.ordered().is_empty() { 0.0 } else { ms(Mark::Found, Mark::Ordered)? },
             total: ms(Mark::Begun, Mark::Found)?,
             launch: if scene.device.is_gpu() { self.launch_ms } else { 0.0 },
             wall: 0.0,

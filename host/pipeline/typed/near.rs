@@ -22,7 +22,8 @@ fn certain(query: Query, grows: bool) -> usize {
     }
     let (found, _) = pipeline.frame(at).expect("a frame");
     let Listed::Hits { hits, .. } = found.listed else { panic!("a continuous query lists contacts") };
-    hits.each().into_iter().flatten().filter(|hit| hit.verdict.is_contact()).count()
+    let Hits::Lists(lists) = hits else { panic!("a CPU lists them as they are found") };
+    lists.iter().flat_map(|list| list.iter()).filter(|hit| hit.verdict.is_contact()).count()
 }
 
 #[test]

@@ -161,8 +161,8 @@ impl<R: Precision> QueryMemory<R> {
                 self.step(scene, Step::Traverse)
             }
             Stage::Narrow => self.narrow(scene, false),
-            Stage::Order if self.narrow.ordered().is_some() => self.step(scene, Step::Order),
-            Stage::Order => Ok(()),
+            Stage::Order if self.narrow.ordered().is_empty() => Ok(()),
+            Stage::Order => self.step(scene, Step::Order),
         }
     }
 
@@ -208,7 +208,7 @@ impl<R: Precision> QueryMemory<R> {
                     if let Step::Narrow(at, _) = step {
                         self.narrow.run(at, &given)
                     } else {
-                        self.narrow.order(&given)
+                        self.narrow.order(&given, scene.is_submitting)
                     }?;
                 }
             }
@@ -231,7 +231,7 @@ impl<R: Precision> QueryMemory<R> {
                 lists
             }
             Step::Narrow(at, _) => self.narrow.lists(at, &mut scene.features),
-            Step::Order => self.narrow.ordered().into_iter().collect(),
+            Step::Order => self.narrow.ordered(),
         };
         let (mut grown, mut again) = (false, Vec::new());
         for list in lists {

@@ -19,7 +19,7 @@ impl<R: Precision> QueryMemory<R> {
             || scene.broads[self.broad].phase.lists().iter().any(|list| list.has_overflowed(counters))
             || steps
                 .any(|at| self.narrow.lists(at, features).iter().any(|list| list.has_overflowed(counters)))
-            || self.narrow.ordered().is_some_and(|list| list.has_overflowed(counters))
+            || self.narrow.ordered().iter().any(|list| list.has_overflowed(counters))
     }
 
     /// Grows every list that a submission found too short, by the demand of its schedule. The next

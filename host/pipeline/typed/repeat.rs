@@ -50,7 +50,7 @@ impl<R: Precision> Again for TypedPipeline<R> {
 
 impl<R: Precision> QueryMemory<R> {
     fn repeat(&mut self, scene: &mut SceneMemory<R>, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
-        if stage == Stage::Order && self.narrow.ordered().is_none() {
+        if stage == Stage::Order && self.narrow.ordered().is_empty() {
             return Ok(Vec::new());
         }
         let counters = self.counters_before(scene, stage);
@@ -85,9 +85,7 @@ impl<R: Precision> QueryMemory<R> {
                 let lists = self.narrow.lists(at, &mut scene.features);
                 lists.iter().for_each(|list| counters[list.counter()] = 0);
             }
-            if let Some(list) = self.narrow.ordered() {
-                counters[list.counter()] = 0;
-            }
+            self.narrow.ordered().iter().for_each(|list| counters[list.counter()] = 0);
         }
         counters
     }

@@ -103,6 +103,9 @@ impl<R: Precision> Submits for TypedPipeline<R> {
         let device = self.scene.device.of(purpose::STATUS);
         let mut submitted = Vec::new();
         for &query in queries {
+            if let Some(ordering) = self.queries[query].narrow.ordering() {
+                ordering.prepare(&self.scene.device)?;
+            }
             let rooms = device.upload(&self.queries[query].rooms(&mut self.scene))?;
             submitted.push(Submitted { query, rooms, status: device.buffer(1)? });
         }

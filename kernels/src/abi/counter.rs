@@ -122,6 +122,8 @@ counters! { 0;
     UNCERTAIN_WIDE,
     /// Contacts that were put into order.
     ORDERED,
+    /// The most contacts of a first feature, if they are more than a run.
+    LONGEST_BIN,
     /// The least distance before any is known: always 0, see [`Counters::shortest`].
     UNKNOWN,
     /// The least distance of the first samples.

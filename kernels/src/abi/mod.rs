@@ -12,6 +12,7 @@ mod order;
 mod output;
 mod queues;
 mod record;
+pub mod rows;
 mod scene;
 mod span;
 pub mod stamp;

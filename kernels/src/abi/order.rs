@@ -1,45 +1,177 @@
-//! Contacts into canonical order: their sort key, and the argument block.
+//! Contacts into canonical order: their names, their rows, and the argument blocks.
 
-use super::{Hit, NearHit, Output, Pair, Span, Tiles};
+use super::rows::{ContactRow, NearRow, PairRow, code};
+use super::{Counters, Hit, NearHit, Output, Pair, Span};
+use crate::prim::near::corner_weights;
 use bytemuck::{Pod, Zeroable};
 
-/// The sort key of a contact.
-pub trait Named {
-    /// The two features.
+/// Which starts of a body count a feature: vertices, triangles or edges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Feature(u32);
+
+impl Feature {
+    /// Vertices.
+    pub const VERTEX: Feature = Feature(0);
+    /// Triangles.
+    pub const TRIANGLE: Feature = Feature(1);
+    /// Edges.
+    pub const EDGE: Feature = Feature(2);
+    /// How many there are.
+    pub const COUNT: u32 = 3;
+
+    /// Its place among the starts of a body.
+    #[inline(always)]
+    pub const fn place(self) -> u32 {
+        self.0
+    }
+}
+
+/// The place of a contact: its bodies, and the indices of its features in these.
+#[derive(Clone, Copy, Debug)]
+pub struct Located {
+    /// Both bodies.
+    pub bodies: [u32; 2],
+    /// Both indices.
+    pub features: [u32; 2],
+    /// Whether it is in the second list.
+    pub is_second: bool,
+    /// Status of a contact that is no undecided one.
+    pub decided: u32,
+}
+
+/// A contact that can be put into order.
+pub trait Named: Pod {
+    /// Its row in the answer.
+    type Row: Pod;
+    /// Its features in the first list.
+    const FIRST: [Feature; 2];
+    /// Its features in the second list.
+    const SECOND: [Feature; 2];
+    /// The two features, numbered through all bodies.
     fn name(&self) -> [u32; 2];
+    /// Its row.
+    fn row(&self, at: &Located) -> Self::Row;
 }
+
 impl Named for Pair {
+    type Row = PairRow;
+    const FIRST: [Feature; 2] = [Feature::TRIANGLE; 2];
+    const SECOND: [Feature; 2] = [Feature::TRIANGLE; 2];
+    #[inline(always)]
     fn name(&self) -> [u32; 2] {
         [self.a, self.b]
     }
+    #[inline(always)]
+    fn row(&self, at: &Located) -> PairRow {
+        PairRow { bodies: at.bodies, triangles: at.features }
+    }
 }
+
 impl Named for Hit {
+    type Row = ContactRow;
+    const FIRST: [Feature; 2] = [Feature::VERTEX, Feature::TRIANGLE];
+    const SECOND: [Feature; 2] = [Feature::EDGE; 2];
+    #[inline(always)]
     fn name(&self) -> [u32; 2] {
         [self.a, self.b]
     }
+    #[inline(always)]
+    fn row(&self, at: &Located) -> ContactRow {
+        ContactRow {
+            bodies: at.bodies,
+            features: at.features,
+            toi: self.verdict.toi,
+            toi_upper: self.verdict.toi_upper,
+            kind: if at.is_second { code::EDGE_EDGE } else { code::VERTEX_FACE },
+            status: match (self.verdict.is_contact(), at.decided) {
+                (false, _) => code::UNDECIDED,
+                (true, 0) => code::UNVERIFIED,
+                (true, _) => code::CERTIFIED,
+            },
+            pad: [0; 6],
+        }
+    }
 }
+
 impl Named for NearHit {
+    type Row = NearRow;
+    const FIRST: [Feature; 2] = Hit::FIRST;
+    const SECOND: [Feature; 2] = Hit::SECOND;
+    #[inline(always)]
     fn name(&self) -> [u32; 2] {
         [self.a, self.b]
+    }
+    #[inline(always)]
+    fn row(&self, at: &Located) -> NearRow {
+        // Corners or ends with a weight. The vertex of a face is one more.
+        let [s, t] = self.at;
+        let [x, y, z] = corner_weights(self.at);
+        let of_face = 1 + (x > 0.0) as u32 + (y > 0.0) as u32 + (z > 0.0) as u32;
+        let of_edges = (1.0 - s > 0.0) as u32 + (s > 0.0) as u32 + (1.0 - t > 0.0) as u32 + (t > 0.0) as u32;
+        let closest = match (at.is_second, if at.is_second { of_edges } else { of_face }) {
+            (true, 4) => code::NEAR_EDGES,
+            (false, 4) => code::NEAR_FACE,
+            (_, 3) => code::NEAR_EDGE,
+            _ => code::NEAR_VERTEX,
+        };
+        NearRow {
+            bodies: at.bodies,
+            features: at.features,
+            squared_distance: self.squared,
+            at: self.at,
+            kind: if at.is_second { code::EDGE_EDGE } else { code::VERTEX_FACE },
+            closest,
+            pad: [0; 6],
+        }
     }
 }
 
 arguments! {
-    /// `order_keys`, `order_gather`: contacts into canonical order.
-    OrderArgs<T: Pod> {
+    /// `order_sums`, `order_starts`: contacts by their first feature, a bin a feature. Also part of
+    /// [`OrderArgs`].
+    Bins {
+        /// How many contacts each bin has; two bins a word, the lower half first. One more than
+        /// there are features, at least.
+        counts: Span<u64>,
+        /// Out: how many contacts are in the bins before each one.
+        starts: Span<u32>,
+        /// Out: how many contacts each tile of bins has.
+        sums: Span<u32>,
+        /// Counters: the most contacts of a bin.
+        counters: Counters,
+        /// How many words a tile has.
+        words: u32,
+        /// Nothing.
+        pad: u32,
+    }
+    /// `order_count`, `order_place`, `order_merge`, `order_rank`: contacts into canonical order.
+    OrderArgs<T: Named> {
         /// Contacts: triangle pairs, or vertices and faces.
         first: Output<T>,
         /// Contacts of edges; or none.
         second: Output<T>,
-        /// Out: all, in order.
-        out: Output<T>,
-        /// Their keys, each above the contact's number.
-        items: Span<u64>,
-        /// Counts of the keys' lowest bytes.
-        tiles: Tiles,
-        /// Bits of a feature.
-        bits: u32,
-        /// Bits of a number.
-        number_bits: u32,
+        /// Out: the rows of all, in order.
+        rows: Output<T::Row>,
+        /// Out: all contacts in the same order; or none.
+        contacts: Output<T>,
+        /// Contacts of each first feature.
+        bins: Bins,
+        /// The place of each contact in its bin.
+        slots: Span<u32>,
+        /// A key of each contact, in the order of bins: its second feature above its number.
+        keys: Span<u64>,
+        /// Out of `order_merge`: keys in longer runs.
+        merged: Span<u64>,
+        /// First vertex, triangle and edge of each body, and the totals; not read for one body.
+        bodies: Span<u32>,
+        /// The bin of the first edge.
+        second_bin: u32,
+        /// Keys of a bin that are in order already, from the first of the bin on: log2 of their
+        /// number.
+        run: u32,
+        /// How many such runs become one: log2 of their number.
+        ways: u32,
+        /// Status of a contact that is no undecided one.
+        decided: u32,
     }
 }

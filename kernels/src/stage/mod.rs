@@ -21,7 +21,7 @@
 //! | [`traverse`] | volumes | candidates: triangle pairs |
 //! | [`balance`] | the work queues of the paper's walk | the same units, evenly cut |
 //! | [`narrow`] | candidates, positions | contacts |
-//! | [`order`] | contacts | the same in canonical order, on a GPU |
+//! | [`order`] | contacts | rows of the answer, in canonical order, on a GPU |
 //! | [`status`] | counts, capacities of lists | whether the answer is complete |
 //!
 //! No stage calls another. They exchange data in memory, through [`crate::abi`]. [`traverse`] and

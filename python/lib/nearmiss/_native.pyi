@@ -279,8 +279,9 @@ class Distance(Query["NearestTriangles"]):
 class Answer:
     """Base class of all answers.
 
-    Rows are in canonical order, the same on every machine. Columns are read-only numpy arrays: copy
-    one before you write to it.
+    Rows are in canonical order, the same on every machine. Columns are read-only numpy arrays. Most
+    are fields of the rows, in their memory: copy one before you write to it, or to have its numbers
+    side by side.
     """
 
     @property

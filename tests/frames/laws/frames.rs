@@ -268,7 +268,7 @@ fn a_frame_depends_on_its_positions_alone() {
 fn a_forgotten_contact_is_named() {
     let forget = |contacts: &mut Contacts| {
         if let Rows::Contacts(all) = &mut contacts.rows {
-            all.pop();
+            all.to_mut().pop();
         }
     };
     let named = (0..8).filter_map(|seed| life(seed, Query::continuous(), forget).err()).next();

@@ -240,7 +240,7 @@ fn only_the_start_is_looked_at() {
     let first = Body::deformable(moving.frames().remove(0));
     let of = |body: Body| ask(engine(), vec![body], Query::near(0.05));
     assert_eq!(of(moving).rows, of(first).rows);
-    assert_eq!(of(still(&[], &[])).rows, Rows::Near(Vec::new()));
+    assert_eq!(of(still(&[], &[])).rows, Rows::Near(Vec::new().into()));
 }
 
 /// The hash hears of every part of a pair.
@@ -259,7 +259,7 @@ fn a_hash_tells_answers_apart() {
         &|pair| pair.feature_b ^= 1,
         &|pair| pair.kind = if pair.kind == Kind::Ee { Kind::Vf } else { Kind::Ee },
         &|pair| pair.squared_distance = pair.squared_distance.next_up(),
-        &|pair| pair.weights[1] = pair.weights[1].next_up(),
+        &|pair| pair.at[0] = pair.at[0].next_up(),
         &|pair| {
             use nearmiss::contacts::Closest::{VertexEdge, VertexVertex};
             pair.closest = if pair.closest == VertexEdge { VertexVertex } else { VertexEdge };

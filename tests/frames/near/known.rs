@@ -97,16 +97,19 @@ fn pair(
     closest: Closest,
 ) -> NearPair {
     let [x, y, z] = weights;
-    let weights = if kind == Kind::Ee { [1.0 - x, x, 1.0 - y, y] } else { [1.0, x, y, z] };
-    NearPair {
-        kind,
+    let at = if kind == Kind::Ee { [x, y] } else { [y, z] };
+    let pair = NearPair {
         bodies: Default::default(),
         feature_a: a,
         feature_b: b,
         squared_distance,
-        weights,
+        at,
+        kind,
         closest,
-    }
+    };
+    let all = if kind == Kind::Ee { [1.0 - x, x, 1.0 - y, y] } else { [1.0, x, y, z] };
+    assert_eq!(pair.weights(), all);
+    pair
 }
 
 /// A rod and a point of their own, next to a triangle: each pair of them once.

@@ -33,14 +33,9 @@ fn a_fault_in_a_frame_is_named() {
     assert!(with(&|all| all.insert(5, all[5])).starts_with("not in order, or twice"));
     assert!(with(&|all| all[2].squared_distance *= 1.0 + 1e-9).contains("squared distance"));
     let inside = found.iter().position(|pair| pair.closest == Closest::VertexFace).expect("one of each");
-    let moved = |by: f64| {
-        with(&|all| {
-            all[inside].weights[0] += by;
-            all[inside].weights[1] -= by;
-        })
-    };
+    let moved = |by: f64| with(&|all| all[inside].at[0] += by);
     assert!(moved(1e-3).contains("weights"));
-    assert!(with(&|all| all[inside].weights[2] += 1e-9).contains("weights"), "a sum that is not 1");
+    assert!(with(&|all| all[inside].at[1] = -1e-9).contains("weights"), "a weight below 0");
     for closest in [Closest::VertexEdge, Closest::VertexVertex, Closest::EdgeEdge] {
         assert!(with(&|all| all[inside].closest = closest).ends_with("another feature is nearest"));
     }

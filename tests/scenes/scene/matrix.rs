@@ -181,7 +181,7 @@ fn bytes_of_a_scene() {
             let near = bytes(&plan, "vertex/face pairs within the distance") > 0;
             assert_eq!(near, motion == QueryKind::Near, "{name}, {motion:?}");
             // On a CPU nothing is ordered on the device, and no walk of one launch has queues.
-            told("keys of the contacts, and their counts", 0);
+            told("bins, slots and keys of the contacts", 0);
             told("contacts in order", 0);
             // Uploads of a frame: poses, and positions of what is deformable; nothing else, and nothing that rests.
             let moved = if rigid > 0 { 64 * ends * rigid } else { ends * 16 * 8 * (moving / 12) };

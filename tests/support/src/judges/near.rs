@@ -131,7 +131,7 @@ impl Truth {
             let known = self.within.get(&row(pair)).cloned();
             beyond += usize::from(known.is_none());
             let truth = known.unwrap_or_else(|| distance_squared(case.0, case.1));
-            let Some(places) = places(case.0, pair.weights) else {
+            let Some(places) = places(case.0, pair.weights()) else {
                 return Err(format!("{pair:?}: weights that do not sum to 1"));
             };
             let reported = (pair.squared_distance, places);

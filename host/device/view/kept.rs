@@ -1,0 +1,100 @@
+//! Bytes of a device's memory that the host keeps: in page-locked memory that the GPU copied them
+//! into, without another copy.
+
+use crate::device::buffer::{Buffer, Memory};
+#[cfg(feature = "cuda")]
+use crate::device::{Machine, cuda};
+use crate::error::Error;
+use bytemuck::Pod;
+
+/// Bytes that the host keeps, aligned to 8 bytes. They need neither buffer nor detector. When they
+/// are dropped, later answers use the same memory.
+pub struct Kept(Bytes);
+
+enum Bytes {
+    /// Whole words, and how many bytes of them count.
+    Own(Vec<u64>, usize),
+    #[cfg(feature = "cuda")]
+    Locked(cuda::Kept),
+}
+
+impl Kept {
+    /// The bytes.
+    pub fn bytes(&self) -> &[u8] {
+        match &self.0 {
+            Bytes::Own(words, bytes) => &bytemuck::cast_slice(words)[..*bytes],
+            #[cfg(feature = "cuda")]
+            Bytes::Locked(kept) => kept.bytes(),
+        }
+    }
+
+    /// Copies bytes; `read` writes them.
+    fn copied<E>(bytes: usize, read: impl FnOnce(&mut [u8]) -> Result<(), E>) -> Result<Kept, E> {
+        let mut words = vec![0u64; bytes.div_ceil(size_of::<u64>())];
+        read(&mut bytemuck::cast_slice_mut(&mut words)[..bytes])?;
+        Ok(Kept(Bytes::Own(words, bytes)))
+    }
+}
+
+impl AsRef<[u8]> for Kept {
+    fn as_ref(&self) -> &[u8] {
+        self.bytes()
+    }
+}
+
+impl<T: Pod> Buffer<T> {
+    /// Keeps the first `len` elements; waits for all work started before, unless they were read
+    /// ahead to be kept.
+    ///
+    /// # Errors
+    /// As for [`Buffer::read`].
+    ///
+    /// # Panics
+    /// If the buffer has fewer elements: a fault of the caller.
+    pub fn keep(&self, len: usize) -> Result<Kept, Error> {
+        assert!(len <= self.len, "more items than the buffer has elements");
+        self.usage.waits("memory was kept by the host")?;
+        let bytes = len * size_of::<T>();
+        if bytes == 0 {
+            return Kept::copied(0, |_| Ok(()));
+        }
+        match (&self.memory, &*self.machine) {
+            (Memory::Host(m), _) => {
+                self.ledger.read(self.purpose, bytes as u64);
+                Kept::copied(bytes, |to| {
+                    to.copy_from_slice(m.as_slice(bytes));
+                    Ok(())
+                })
+            }
+            #[cfg(feature = "cuda")]
+            (Memory::Gpu(m), Machine::Cuda(c)) => {
+                let (kept, copied) = c.keep(m, bytes)?;
+                self.ledger.read(self.purpose, copied as u64);
+                match kept {
+                    Some(kept) => Ok(Kept(Bytes::Locked(kept))),
+                    // There is no more page-locked memory.
+                    None => Kept::copied(bytes, |to| c.read(m, to)),
+                }
+            }
+            #[cfg(feature = "cuda")]
+            _ => Err(Error::Bug { what: "memory of another machine".into() }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::device::Device;
+    use crate::device::emulator::{Emulator, Mode};
+
+    #[test]
+    fn bytes_are_kept_while_the_device_goes_on() {
+        let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
+        let mut buffer = device.upload(&[[1u32, 2, 3], [4, 5, 6], [7, 8, 9]]).expect("memory");
+        let kept = [0, 1, 2].map(|len| buffer.keep(len).expect("kept"));
+        buffer.write(&[[0; 3]; 3]).expect("nothing forbids it");
+        drop(buffer);
+        let there = kept.each_ref().map(|kept| bytemuck::cast_slice::<u8, u32>(kept.bytes()));
+        assert_eq!(there, [&[][..], &[1, 2, 3], &[1, 2, 3, 4, 5, 6]]);
+    }
+}
