@@ -6,6 +6,7 @@ mod name;
 use crate::abi::*;
 use crate::bv::{self, Contain};
 use crate::bvh::centres;
+use crate::bvh::course::{Moves, Rests};
 use crate::exec::Block;
 use crate::math::Real;
 use crate::prim::isolate::ladder::SLICES;
@@ -14,7 +15,6 @@ use crate::queue::worker;
 use crate::sort;
 use crate::stage::construct::{cuts, graft, morton, tile_filters, tree, treelet};
 use crate::stage::fit::{leaves as fit_of_leaves, rims, tiles as fit_of_tiles};
-use crate::stage::narrow::course::{Moves, Rests};
 use crate::stage::narrow::discrete::{Start, Still};
 use crate::stage::narrow::{
     below_precision, certain, climb, cull, discrete, features, near, nearest, separate, slice, solve,

@@ -64,7 +64,7 @@ pub fn field<'py, T, E: Element, const N: usize>(
     let (count, base) = (list.len(), shown.clone().into_any());
     // SAFETY: `N` numbers of type `E` begin `offset` bytes behind each row's start, within the row,
     // as asserted; rows of `T` are `stride` numbers apart. All numbers are initialised: they are
-    // fields. The base holds the rows, so they stay where they are and nobody writes them.
+    // fields. The base holds the rows, so they stay in place, and no code writes them.
     // `Columns` forbids writing the array.
     unsafe {
         let numbers = start.byte_add(offset).cast::<E>();

@@ -49,7 +49,7 @@ fn few_pairs_reach_the_rungs_that_cost_much() {
     for (name, body) in hard::hard(PART) {
         for solver in [Solver::Certified, Solver::CertifiedF32, Solver::CertifiedF64] {
             let all = asked(name, vec![body.clone()], solver);
-            assert!(all.stats.candidates > 1_000, "{name}: nothing is asked");
+            assert!(all.stats.candidates > 500, "{name}: nothing is asked");
             assert!(
                 total(all.stats.sliced_vf_ee) * 100 <= all.stats.candidates * SLICED,
                 "{name}, {solver:?}: too many slices"

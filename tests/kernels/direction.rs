@@ -1,4 +1,4 @@
-//! A direction that parts two triangles: none is found for triangles that meet, whatever is rounded.
+//! A direction that parts two triangles: none is found for triangles that meet, however numbers round.
 
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::Moving;
@@ -120,7 +120,7 @@ fn features_within_the_gap_are_not_parted() {
     assert!(apart > PAIRS / 1000);
 }
 
-/// What is above by a hundred-thousandth of its size is parted, at any place.
+/// Triangles that are apart by a hundred-thousandth of their size are parted, at any place.
 #[test]
 fn triangles_a_little_apart_are_parted() {
     let flat = |z: f32, o: f32| -> Corners<f32> {

@@ -59,7 +59,7 @@ fn a_small_trade_has_every_part() {
     let headline = all["headline"].as_str().expect("a line");
     assert!(headline.starts_with("0 missed, 0 late") && headline.contains("1e-4 edge lengths"), "{headline}");
     let funnel: Vec<u64> = rows(&all, "funnel").iter().take(3).filter_map(|r| r["pairs"].as_u64()).collect();
-    assert!(funnel[1] >= funnel[2] && funnel[2] > 0, "{funnel:?}");
+    assert!(funnel[0] > funnel[1] && funnel[1] > 0 && funnel[1] >= funnel[2], "{funnel:?}");
     assert!(!rows(&all, "refit").is_empty());
     for name in ["trade", "trade-sweeps", "trade-funnel", "trade-refit"] {
         let csv = std::fs::read_to_string(folder.path(&format!("out/{name}.csv"))).expect("a file");

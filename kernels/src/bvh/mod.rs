@@ -1,6 +1,7 @@
 //! The level-ordered tree: its invariants, and a checker that names the broken one.
 
 pub mod centres;
+pub mod course;
 pub mod filter;
 pub mod group;
 pub mod horizon;

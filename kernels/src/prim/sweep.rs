@@ -4,7 +4,7 @@
 
 use super::cubic::Moving;
 use super::isolate::pair::Window;
-use crate::math::tolerance::Tolerance;
+use crate::math::tolerance::{SINGLE_MOST, Tolerance};
 use crate::math::{Real, Vec3};
 
 /// Tests of two triangles.
@@ -49,7 +49,8 @@ fn signs<R: Real>(x: Vec3<R>, y: Vec3<R>) -> u32 {
 pub type Corners<R> = [Moving<R>; 3];
 
 /// Boxes around the paths of the corners of two triangles, over a part of the step. Also whether
-/// there is such a part. In it the boxes around the triangles come within the gap, and it ends at
+/// there is such a part, and before that whether numbers are far from overflow: if not, nothing
+/// else holds. In the part the boxes around the triangles come within the gap, and it ends at
 /// the horizon. Boxes of the first triangle grow by the gap and by all roundings.
 ///
 /// Corners are differences that were rounded: `SWEPT_ROUNDED` of the largest for each of both
@@ -66,21 +67,25 @@ pub type Corners<R> = [Moving<R>; 3];
 /// those of their triangles only behind that. Then their windows are empty by more than they are
 /// widened.
 #[inline(always)]
-fn swept(p: &Corners<f32>, q: &Corners<f32>, gap: f32, horizon: f32) -> (bool, [[Swept<f32>; 3]; 2]) {
+fn swept(p: &Corners<f32>, q: &Corners<f32>, gap: f32, horizon: f32) -> (bool, bool, [[Swept<f32>; 3]; 2]) {
     let mut window = Window::new();
     let (cut, sooner) =
         if horizon < 1.0 { (horizon * f32::INCLUSION_UP, 3.0 * f32::ISOLATE_WINDOW) } else { (0.0, 0.0) };
     // One axis after the other, each by a constant number: nothing goes to memory on the GPU.
-    let grow = Vec3([
+    let (x, y, z) = (
         axis(0, &mut window, p, q, (gap, cut)),
         axis(1, &mut window, p, q, (gap, cut)),
         axis(2, &mut window, p, q, (gap, cut)),
-    ]);
+    );
+    let grow = Vec3([x, y, z]);
+    // An axis grows by more than a part of its reach; a number that is none is not below.
+    let most = SINGLE_MOST as f32 * f32::SWEPT_ROUNDED;
+    let is_finite = (x < most) & (y < most) & (z < most);
     let whole = window.within(1.0);
     let begins = whole.is_some_and(|part| part.0 <= horizon);
     let (from, to) = whole.unwrap_or((0.0, 1.0));
     let part = ((from - sooner).greater(0.0), to.lesser(horizon));
-    (begins, [ways(p, part, grow), ways(q, part, Vec3([0.0; 3]))])
+    (is_finite, begins, [ways(p, part, grow), ways(q, part, Vec3([0.0; 3]))])
 }
 
 /// Clips the part of the step by one axis; by how much boxes grow on it: the gap, roundings, and
@@ -150,8 +155,14 @@ pub fn meeting<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: f32, horizon: f32) 
     let (from, to) = (middle(p[0].t0, q[0].t0), middle(p[0].t1, q[0].t1));
     let of = |x: Moving<R>| Moving { t0: (x.t0 - from).narrow(), t1: (x.t1 - to).narrow() };
     let (p, q) = ([of(p[0]), of(p[1]), of(p[2])], [of(q[0]), of(q[1]), of(q[2])]);
-    let (meet, boxes) = swept(&p, &q, gap, horizon);
-    if meet { sharing(&boxes, Swept::apart) } else { 0 }
+    let (is_finite, meet, boxes) = swept(&p, &q, gap, horizon);
+    if !is_finite {
+        ALL
+    } else if meet {
+        sharing(&boxes, Swept::apart)
+    } else {
+        0
+    }
 }
 
 /// The same of two triangles at rest, by their corners; the gap is above 0, and [`more`] of it.

@@ -3,6 +3,7 @@
 
 pub mod bvtt;
 pub mod pair;
+pub mod waiting;
 pub mod worker;
 
 use crate::abi::Pair;

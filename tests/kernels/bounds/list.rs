@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// Constants on which no proof of an answer rests, or which are no allowance.
-const OTHERS: [(&str, &str); 26] = [
+const OTHERS: [(&str, &str); 28] = [
     ("U32", "the unit"),
     ("U64", "the unit"),
     ("CUBIC_VALUE", "a guess: the cubic's roots guarantee nothing"),
@@ -27,8 +27,13 @@ const OTHERS: [(&str, &str); 26] = [
     ("INCLUSION_DEEP", "a cost"),
     ("MOVING_LIMIT", "a range"),
     ("BOX_LIMIT", "a range"),
+    ("DIRECTION", "twelve corners count where two err: tests/kernels/direction.rs needs it"),
     ("COVARIANCE_ZERO", "a cost: any axes are valid"),
     ("SINGLE_MOST", "a range: within it f32 overflows nowhere"),
+    (
+        "SWEPT_ROUNDED",
+        "one rounding of a difference, as in INCLUSION_INPUT: tests/kernels/sweep.rs loses none",
+    ),
     ("POSE_UNIT", "a range of what is taken for a pose"),
 ];
 

@@ -67,7 +67,7 @@ fn a_sign_that_is_turned_is_noticed() {
     assert!(noticed.iter().all(|&n| n > 4), "{noticed:?}");
 }
 
-/// Of triangles without a zero sign, all signs at once decide nearly all, either way.
+/// All signs at once decide nearly every pair without a zero sign, either way.
 #[test]
 fn all_signs_at_once_decide_most_pairs() {
     let (mut r, mut met, mut apart) = (random(7), 0, 0);

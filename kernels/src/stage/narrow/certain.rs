@@ -79,10 +79,6 @@ pub fn exact<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &DiscreteArgs<
     // `Certain` always answers; were it not to, the pair stays.
     if are_few(block, args, count) {
         return of_few::<R, F, Certain, B>(block, args, count, |lane, pair, verdict| {
-            let verdict = verdict.or_else(|| {
-                let [p, q] = faces(lane, args, pair).map(|face| corners::<R, F, _>(lane, args, face));
-                meets::<R, Certain>(&p, &q)
-            });
             if verdict != Some(false) {
                 args.contacts.push(lane, pair);
             }
@@ -99,8 +95,9 @@ fn are_few<R: Real, B: Block>(block: &B, args: &DiscreteArgs<R>, count: u32) -> 
     !args.flags.has(DiscreteFlags::KEEP_ADJACENT) && count <= block.blocks() * TOGETHER
 }
 
-/// Few pairs: a lane computes one sign. One lane of each pair takes the verdict: none if a sign is
-/// not known, or if the triangles are coplanar.
+/// Few pairs: a lane computes one sign. One lane of each pair takes the verdict. It computes more
+/// signs if one is not known, or if the triangles are coplanar: so the verdict is that of
+/// [`meets`].
 #[inline(always)]
 fn of_few<R: Real, F: Frame<R>, S: Signs<R>, B: Block>(
     block: &mut B,
@@ -132,13 +129,26 @@ fn of_few<R: Real, F: Frame<R>, S: Signs<R>, B: Block>(
         while i < some {
             let sign = |k: usize| lane.get(signs, i * LANES_A_PAIR + k as u32);
             let all: [u32; SIGNS as usize] = core::array::from_fn(sign);
-            let verdict =
-                if all.contains(&UNKNOWN) { None } else { decided(&all.map(|sign| sign as i32 - 1)) };
-            take(lane, args.pairs.get(lane, base + i), verdict);
+            let pair = args.pairs.get(lane, base + i);
+            let known = if all.contains(&UNKNOWN) { None } else { decided(&all.map(|sign| sign as i32 - 1)) };
+            take(
+                lane,
+                pair,
+                known.or_else(|| {
+                    let [p, q] = faces(lane, args, pair).map(|face| corners::<R, F, _>(lane, args, face));
+                    one_by_one::<R, S>(p, q)
+                }),
+            );
             i += lanes;
         }
         lane.meet();
     });
+}
+
+/// [`meets`], by value and out of line: few lanes come here.
+#[inline(never)]
+fn one_by_one<R: Real, S: Signs<R>>(p: [Vec3<R>; 3], q: [Vec3<R>; 3]) -> Option<bool> {
+    meets::<R, S>(&p, &q)
 }
 
 /// Vertex indices of two triangles.

@@ -24,7 +24,6 @@
 //!          40 for a pair of `Start` whose boxes are apart. 600 for all signs of another, without
 //!          branches; on a CPU in vectors.
 
-use super::waiting::{Waiting, waiting_bytes};
 use super::{Entries, append_each, expect};
 use crate::abi::{DiscreteArgs, DiscreteFlags, Pair, Positions};
 use crate::exec::{Block, Lane, OPEN, RowMap, Slot};
@@ -33,6 +32,7 @@ use crate::prim::adjacent::{Shared, share_a_vertex};
 use crate::prim::at_once::meets_at_once;
 use crate::prim::moller;
 use crate::prim::tri_tri::parted;
+use crate::queue::waiting::{Waiting, waiting_bytes};
 use core::marker::PhantomData;
 
 /// The positions to read, and the first test of a pair of triangles.

@@ -1,8 +1,8 @@
 //! # Features: triangle pairs → vertex/face and edge/edge candidates
 //! Paper    the thesis, section 6.2.5: "each of the 15 elementary vertex/face and edge/edge tests".
 //! Launch   a lane a triangle pair; a grid of any size strides.
-//!          [`super::course::Moves`] over a step, [`super::course::Rests`] at rest; each is a
-//!          kernel of its own.
+//!          [`Moves`](crate::bvh::course::Moves) over a step, [`Rests`](crate::bvh::course::Rests) at
+//!          rest; each is a kernel of its own.
 //! Reads    candidates (pairs that share a vertex among them), facets, positions of both frames, or
 //!          of one.
 //! Writes   those vertex/face and edge/edge pairs whose boxes come within the gap, each once.
@@ -30,15 +30,15 @@
 //!          No branches; on a CPU in vectors.
 //!          Output is numbered in shared memory first, so that all lanes write.
 
-use super::course::{Course, Gap};
 use super::expect;
-use super::waiting::{Waiting, waiting_bytes};
 use crate::abi::{Facet, FeaturesArgs, Pair};
+use crate::bvh::course::{Course, Gap};
 use crate::bvh::horizon::Horizon;
 use crate::exec::{Block, Lane, OPEN, RowMap, Shared, Slot};
 use crate::math::{Real, pick};
 use crate::prim::direction::parted;
 use crate::prim::sweep::MOST;
+use crate::queue::waiting::{Waiting, waiting_bytes};
 use core::marker::PhantomData;
 
 /// The common corners of two triangles. Bit j of row i: corner i of p is corner j of q.
@@ -202,6 +202,7 @@ impl Two {
 /// Vertex/face and edge/edge candidates of each triangle pair. Two filters one after the other, in
 /// the order that leaves less for the second one. With a horizon most pairs have no boxes that meet
 /// before it: directions come second.
+#[inline(always)]
 pub fn features<R: Real, C: Course<R>, const HORIZON: bool, B: Block>(block: &mut B, args: &FeaturesArgs<R>) {
     let (count, lanes) = (args.pairs.listed(block), block.lanes());
     let later = block.blocks() * lanes;
@@ -310,7 +311,10 @@ impl<R: Real, C: Course<R>, B: Block> Tests<R, C, B> {
                 &self.directions,
                 find,
                 |lane, two| two.parted::<R, C, _>(lane, args),
-                |lane, result| *self.are_apart.of(lane) = result.is_some_and(|told| told.1 == APART),
+                |lane, result| {
+                    *self.are_apart.of(lane) = result.is_some_and(|(_, verdict)| verdict == APART);
+                    lane.meet();
+                },
             );
         }
         block.map_rows(

@@ -20,7 +20,6 @@
 pub mod below_precision;
 pub mod certain;
 pub mod climb;
-pub mod course;
 pub mod cull;
 pub mod discrete;
 pub mod features;
@@ -29,7 +28,6 @@ pub mod nearest;
 pub mod separate;
 pub mod slice;
 pub mod solve;
-mod waiting;
 
 use crate::abi::{BodyTolerance, Output, Pair, Point, Positions, RungArgs, Span, earliest};
 use crate::exec::{ALONE, Block, Lane, RowMap, Slot};

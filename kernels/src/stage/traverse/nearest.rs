@@ -114,6 +114,7 @@ pub fn sample<R: Real, V: Volume, B: Block>(block: &mut B, args: &NearestArgs<R,
         });
         base += stride;
     }
+    block.phase(|lane| lane.meet());
     let sum = block.scan(&mut steps);
     args.counters.add_once(block, counter::STEPS, sum as u64);
 }

@@ -168,8 +168,8 @@ impl Scene {
     /// Returns the fault of an answer; `None` if it is right.
     pub fn judge(&self, found: &Contacts) -> Option<String> {
         match &self.finds {
-            Finds::OracleByFilter if found.stats.uncertain > 0 => {
-                Some(format!("{} pairs needed exact signs", found.stats.uncertain))
+            Finds::OracleByFilter if found.stats.uncertain_wide > 0 => {
+                Some(format!("{} pairs needed exact signs", found.stats.uncertain_wide))
             }
             Finds::Pairs(_) | Finds::Oracle | Finds::OracleByFilter => {
                 differ(&found.triangles(), &self.pairs())

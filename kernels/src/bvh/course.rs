@@ -1,7 +1,6 @@
-//! Triangles in motion and at rest, for [`super::features`]: what is read of a vertex, and the tests
-//! of it.
+//! Triangles in motion and at rest, for [`crate::stage::narrow::features`]: the part of a vertex that
+//! it reads, and the tests of it.
 
-use super::moving;
 use crate::abi::Positions;
 use crate::exec::Lane;
 use crate::math::{Real, Vec3};
@@ -56,7 +55,8 @@ impl<R: Real> Course<R> for Moves {
     }
     #[inline(always)]
     fn corner<L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32) -> Moving<R> {
-        moving(lane, frames, vertex)
+        let vertex = lane.read(frames.moving, vertex);
+        Moving { t0: vertex.t0.at, t1: vertex.t1.at }
     }
     #[inline(always)]
     fn filled(number: R) -> Moving<R> {
