@@ -1,6 +1,6 @@
 //! Limit of the size of answers in host memory.
 
-use super::Device;
+use super::{Device, Machine};
 use std::sync::atomic::Ordering;
 
 impl Device {
@@ -11,6 +11,15 @@ impl Device {
     pub fn limited_answers(self, bytes: u64) -> Device {
         self.usage.answers.store(bytes, Ordering::Relaxed);
         self
+    }
+
+    /// Bytes of page-locked memory of earlier answers, for later ones.
+    pub(crate) fn spare_rows(&self) -> u64 {
+        match &*self.machine {
+            Machine::Emulator(_) => 0,
+            #[cfg(feature = "cuda")]
+            Machine::Cuda(c) => c.spare(),
+        }
     }
 
     /// Maximum bytes of the rows of one answer.

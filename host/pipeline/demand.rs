@@ -48,13 +48,13 @@ impl Demand {
         Demand { row: bytes as u64, counters, within, advice, before: 0 }
     }
 
-    /// Returns the bytes available for rows of all slices: those of earlier slices, and free
-    /// memory.
+    /// Returns the bytes available for rows of all slices: those of earlier slices, free memory, and
+    /// memory of earlier answers.
     fn room(&self, rows: u64, device: &Device) -> u64 {
         let held = self.before.saturating_mul(self.row);
         let more = rows.saturating_sub(self.before).saturating_mul(self.row);
         let free = (more >= LITTLE).then(memory::free).flatten().unwrap_or(u64::MAX);
-        held.saturating_add(free).min(device.answers())
+        held.saturating_add(free).saturating_add(device.spare_rows()).min(device.answers())
     }
 
     /// Refuses an answer of at least `rows` rows, earlier slices included, if there is no room for

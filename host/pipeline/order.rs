@@ -124,6 +124,8 @@ pub trait Ordering {
     /// # Errors
     /// Device errors.
     fn prepare(&mut self, device: &Device) -> Result<(), Error>;
+    /// Notes that launches failed: counts may be left over, and the next run clears them.
+    fn failed(&mut self);
 }
 
 impl<T: Ordered> Ordering for Option<Order<T>> {
@@ -138,6 +140,12 @@ impl<T: Ordered> Ordering for Option<Order<T>> {
 
     fn prepare(&mut self, device: &Device) -> Result<(), Error> {
         self.as_mut().map_or(Ok(()), |order| order.prepare(device))
+    }
+
+    fn failed(&mut self) {
+        if let Some(order) = self {
+            order.is_clear = false;
+        }
     }
 }
 

@@ -63,7 +63,7 @@ pub fn of(plan: &Plan, layout: &Layout, query: &Query, is_gpu: bool) -> Vec<Left
     let why = match (earliest, is_gpu) {
         (true, _) => "there is one time, and no list",
         (_, false) => "the host orders contacts on a CPU",
-        _ => "there was nothing to order, or keys do not fit 64 bits",
+        _ => "there was nothing to order",
     };
     put(stage("order"), "ordering on the device", why);
     all

@@ -115,11 +115,11 @@ impl Code {
         let code = unpacked(packed).map_err(bug)?;
         match Module::of_machine_code(context, gpu, &code) {
             Ok(module) => Ok(Some(module)),
-            Err(Refusal::OUT_OF_MEMORY) => Err(refused(what)(Refusal::OUT_OF_MEMORY)),
-            Err(refusal) => {
+            Err(refusal) if refusal.is_of_code() => {
                 self.refusal.get_or_init(|| refusal);
                 Ok(None)
             }
+            Err(refusal) => Err(refused(what)(refusal)),
         }
     }
 }

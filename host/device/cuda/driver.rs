@@ -21,6 +21,20 @@ impl Refusal {
     /// The machine, or the GPU, has no more memory.
     pub const OUT_OF_MEMORY: Refusal = Refusal(types::CUDA_ERROR_OUT_OF_MEMORY);
 
+    /// Whether the driver cannot use an image of code, and may still use PTX. Other refusals are of
+    /// the context or of memory.
+    pub fn is_of_code(self) -> bool {
+        const CODE: [u32; 6] = [
+            types::CUDA_ERROR_INVALID_IMAGE,
+            types::CUDA_ERROR_NO_BINARY_FOR_GPU,
+            types::CUDA_ERROR_INVALID_PTX,
+            types::CUDA_ERROR_UNSUPPORTED_PTX_VERSION,
+            types::CUDA_ERROR_INVALID_SOURCE,
+            types::CUDA_ERROR_NOT_SUPPORTED,
+        ];
+        CODE.contains(&self.0)
+    }
+
     /// Whether the cause is a graph that is being recorded: in this thread, or in another in CUDA's
     /// global mode.
     fn is_of_recording(self) -> bool {

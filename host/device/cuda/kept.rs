@@ -6,6 +6,7 @@ use super::driver::refused;
 use super::memory::{Locked, Memory};
 use super::stream::Stream;
 use crate::error::Error;
+use crate::memory;
 use std::sync::Arc;
 
 /// Least size of a block, in bytes.
@@ -13,8 +14,12 @@ const LEAST: usize = 1 << 16;
 /// Size from which on a block has an eighth more than the answer, in bytes; below, it is a power of
 /// two.
 const LARGE: usize = 64 << 20;
-/// Most blocks that no answer keeps.
-const SPARE: usize = 4;
+/// Most blocks that no answer keeps. The ones that were used least recently are freed.
+const SPARE: usize = 16;
+/// Most bytes of them, but for one block of any size.
+const SPARE_BYTES: usize = 1 << 30;
+/// Size from which on no new block is made for bytes that are read ahead: the answer may be refused.
+const CHECKED: usize = 16 << 20;
 
 /// Bytes of a block.
 pub struct Kept {
@@ -26,6 +31,11 @@ impl Kept {
     /// The bytes.
     pub fn bytes(&self) -> &[u8] {
         self.memory.piece(0, self.bytes)
+    }
+
+    /// Bytes of the block, of which the answer may use few.
+    pub fn block(&self) -> usize {
+        self.memory.len()
     }
 }
 
@@ -52,22 +62,47 @@ impl Blocks {
         Blocks { context: context.clone(), blocks: Vec::new(), ahead: Vec::new(), epoch: 0 }
     }
 
-    /// The smallest block that no answer keeps and that has room, taken out of the list; a new one
-    /// if there is none, or nothing if the driver has no memory for it.
-    fn take(&mut self, gpu: &Bound, stream: &Stream, bytes: usize) -> Result<Option<Arc<Locked>>, Error> {
-        let is_free = |block: &Arc<Locked>| Arc::strong_count(block) == 1;
+    /// The smallest block that no answer keeps and that has room, taken out of the list.
+    fn free(&mut self, bytes: usize) -> Option<Arc<Locked>> {
         let fits = |(_, block): &(usize, &Arc<Locked>)| is_free(block) && block.len() >= bytes;
         let found = self.blocks.iter().enumerate().filter(fits).min_by_key(|(_, block)| block.len());
-        let found = found.map(|(at, _)| at).map(|at| self.blocks.swap_remove(at));
-        let free = self.blocks.iter().filter(|block| is_free(block)).count();
-        if found.is_none() || free > SPARE {
-            // All are too small, or too many are left over. A copy that failed may still be in
-            // progress.
-            stream.wait(gpu).map_err(refused("waiting for copies"))?;
-            self.blocks.retain(|block| !is_free(block));
-        }
+        found.map(|(at, _)| at).map(|at| self.blocks.remove(at))
+    }
+
+    /// A free block, or a new one; nothing if the host or the driver has no memory for it.
+    fn take(&mut self, gpu: &Bound, stream: &Stream, bytes: usize) -> Result<Option<Arc<Locked>>, Error> {
+        let found = self.free(bytes);
+        self.trim(gpu, stream)?;
         let size = if bytes < LARGE { bytes.max(LEAST).next_power_of_two() } else { bytes + bytes / 8 };
-        Ok(found.or_else(|| Locked::new(&self.context, gpu, size).ok().map(Arc::new)))
+        Ok(found.or_else(|| {
+            memory::require("the rows of an answer", size as u64).ok()?;
+            Locked::new(&self.context, gpu, size).ok().map(Arc::new)
+        }))
+    }
+
+    /// Frees the blocks that too many are left over.
+    fn trim(&mut self, gpu: &Bound, stream: &Stream) -> Result<(), Error> {
+        let (mut count, mut bytes, mut surplus) = (0, 0, Vec::new());
+        // The last ones were used most recently.
+        for (at, block) in self.blocks.iter().enumerate().rev().filter(|(_, block)| is_free(block)) {
+            (count, bytes) = (count + 1, bytes + block.len());
+            if count > SPARE || (count > 1 && bytes > SPARE_BYTES) {
+                surplus.push(at);
+            }
+        }
+        if !surplus.is_empty() {
+            // A copy that failed may still be in progress.
+            stream.wait(gpu).map_err(refused("waiting for copies"))?;
+        }
+        surplus.into_iter().for_each(|at| drop(self.blocks.remove(at)));
+        Ok(())
+    }
+
+    /// Bytes of the blocks that no answer keeps.
+    pub fn spare(&self) -> u64 {
+        let ahead = self.ahead.iter().map(|ahead| ahead.memory.len());
+        let free = self.blocks.iter().filter(|block| is_free(block)).map(|block| block.len());
+        free.chain(ahead).sum::<usize>() as u64
     }
 
     /// Forgets bytes that were read ahead. The caller reads others, in this epoch.
@@ -76,11 +111,14 @@ impl Blocks {
         self.epoch = epoch;
     }
 
-    /// Starts the copy of the first bytes of a buffer. The caller waits for the stream.
+    /// Starts the copy of the first bytes of a buffer, if there is a block for them. The caller waits
+    /// for the stream.
     pub fn start(&mut self, gpu: &Bound, stream: &Stream, from: &Memory, bytes: usize) -> Result<(), Error> {
-        if let Some(mut memory) = self.take(gpu, stream, bytes)? {
-            copy(gpu, stream, from, 0..bytes, &mut memory)?;
+        let found = if bytes < CHECKED { self.take(gpu, stream, bytes)? } else { self.free(bytes) };
+        if let Some(mut memory) = found {
+            let copied = copy(gpu, stream, from, 0..bytes, &mut memory);
             self.blocks.push(memory.clone());
+            copied?;
             self.ahead.push(Ahead { addr: from.addr(), memory, bytes });
         }
         Ok(())
@@ -116,6 +154,11 @@ impl Blocks {
     }
 }
 
+/// Whether no answer keeps a block, and no bytes were read ahead into it.
+fn is_free(block: &Arc<Locked>) -> bool {
+    Arc::strong_count(block) == 1
+}
+
 /// Starts the copy of a part of a buffer to the same part of a block that has one holder.
 fn copy(
     gpu: &Bound,
@@ -130,6 +173,6 @@ fn copy(
         return Ok(());
     }
     // SAFETY: no answer has the block before the stream was waited for, which `keep` and the caller
-    // of `start` do. A block is freed only after such a wait (`take`, the GPU's drop).
+    // of `start` do. A block is freed only after such a wait (`trim`, the GPU's drop).
     unsafe { from.read(gpu, stream, part.start, to) }.map_err(refused("copying from the GPU"))
 }

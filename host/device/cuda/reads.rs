@@ -43,12 +43,12 @@ impl Cuda {
         let gpu = self.bind()?;
         let mut blocks = locked(&self.blocks);
         blocks.forget(epoch);
-        for first in all.iter().filter(|first| first.is_kept && first.bytes > 0) {
-            blocks.start(&gpu, &self.stream, first.memory, first.bytes)?;
-        }
+        let mut kept = all.iter().filter(|first| first.is_kept && first.bytes > 0);
+        let started = kept.try_for_each(|first| blocks.start(&gpu, &self.stream, first.memory, first.bytes));
         let others = all.iter().filter(|first| !first.is_kept).map(|first| (first.memory, first.bytes));
         let others: Vec<_> = others.collect();
-        let read = locked(&self.staging).read_ahead(&gpu, &self.stream, epoch, &others);
+        let read =
+            started.and_then(|()| locked(&self.staging).read_ahead(&gpu, &self.stream, epoch, &others));
         // Bytes whose wait failed are not valid.
         read.inspect_err(|_| blocks.forget(epoch))
     }
@@ -56,6 +56,11 @@ impl Cuda {
     /// The first bytes of a buffer, if they were read ahead and nothing has changed since.
     pub fn known(&self, memory: &Memory, bytes: usize) -> Option<Known> {
         locked(&self.staging).known(self.epoch.load(Ordering::Relaxed), memory.addr(), bytes)
+    }
+
+    /// Bytes of page-locked memory that later answers can use.
+    pub fn spare(&self) -> u64 {
+        locked(&self.blocks).spare()
     }
 
     /// The first bytes of a buffer, to be kept by the host, and how many were copied now. Nothing

@@ -11,6 +11,13 @@ use bytemuck::Pod;
 /// are dropped, later answers use the same memory.
 pub struct Kept(Bytes);
 
+/// Factor by which a block may exceed the bytes that are kept in it.
+#[cfg(feature = "cuda")]
+const WASTEFUL: usize = 4;
+/// Bytes for which any block of four times that size will do.
+#[cfg(feature = "cuda")]
+const LITTLE: usize = 1 << 18;
+
 enum Bytes {
     /// Whole words, and how many bytes of them count.
     Own(Vec<u64>, usize),
@@ -71,6 +78,11 @@ impl<T: Pod> Buffer<T> {
                 let (kept, copied) = c.keep(m, bytes)?;
                 self.ledger.read(self.purpose, copied as u64);
                 match kept {
+                    // A large block would be kept for few bytes.
+                    Some(kept) if kept.block() / WASTEFUL > bytes.max(LITTLE) => Kept::copied(bytes, |to| {
+                        to.copy_from_slice(kept.bytes());
+                        Ok(())
+                    }),
                     Some(kept) => Ok(Kept(Bytes::Locked(kept))),
                     // There is no more page-locked memory.
                     None => Kept::copied(bytes, |to| c.read(m, to)),

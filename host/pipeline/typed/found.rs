@@ -56,13 +56,14 @@ pub struct Found<'a> {
 }
 
 impl Found<'_> {
-    /// Returns the bytes of the answer.
+    /// Returns the bytes that the rows of the answer still take: none if the device has written
+    /// them.
     pub fn bytes(&self) -> u64 {
         let bytes = match &self.listed {
-            Listed::Pairs(pairs) => pairs.count() * size_of::<crate::contacts::TrianglePair>(),
-            Listed::Hits { hits, .. } => hits.count() * size_of::<crate::Contact>(),
+            Listed::Pairs(pairs) => pairs.unwritten() * size_of::<crate::contacts::TrianglePair>(),
+            Listed::Hits { hits, .. } => hits.unwritten() * size_of::<crate::Contact>(),
             Listed::Earliest { .. } | Listed::Nearest(_) => 0,
-            Listed::Near(hits) => hits.count() * size_of::<crate::contacts::NearPair>(),
+            Listed::Near(hits) => hits.unwritten() * size_of::<crate::contacts::NearPair>(),
         };
         bytes as u64
     }
@@ -96,11 +97,11 @@ impl<'a, T: Ordered> Hits<'a, T> {
         }
     }
 
-    /// Returns the number of hits.
-    fn count(&self) -> usize {
+    /// Returns the number of hits that are not rows yet.
+    fn unwritten(&self) -> usize {
         match self {
             Hits::Lists(lists) => lists.iter().map(|list| list.len()).sum(),
-            Hits::Rows(rows) => rows.bytes().len() / size_of::<T::Row>(),
+            Hits::Rows(_) => 0,
         }
     }
 }

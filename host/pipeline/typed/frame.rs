@@ -76,6 +76,11 @@ impl<R: Precision> QueryMemory<R> {
         };
         self.replay = replay;
         self.launch_ms += start.elapsed().as_secs_f64() * 1e3;
+        if done.is_err()
+            && let Some(order) = self.narrow.ordering()
+        {
+            order.failed();
+        }
         done
     }
 

@@ -135,6 +135,9 @@ impl<R: Precision> Submits for TypedPipeline<R> {
         // SAFETY: it launches and clears; it keeps the memory that it holds.
         let done = unsafe { replay.run(&device, |_| self.enqueue()) };
         self.submission.iter_mut().for_each(|submission| submission.replay = std::mem::take(&mut replay));
+        if done.is_err() {
+            self.queries.iter_mut().filter_map(|own| own.narrow.ordering()).for_each(|order| order.failed());
+        }
         done
     }
 
@@ -156,6 +159,11 @@ impl<R: Precision> Submits for TypedPipeline<R> {
             Err(error) => return Err(error),
         };
         let own = &mut self.queries[query];
+        if own.demand.counted(&counters, &self.scene.device).is_err() {
+            // As above.
+            self.submission = None;
+            return Ok(None);
+        }
         own.last.clone_from(&counters);
         own.gather(&self.scene, counters, 0).map(|found| Some((found, Stages::default())))
     }
