@@ -14,8 +14,9 @@ pub struct List<T> {
     entries: Buffer<T>,
 }
 
-/// Longest list: entries are numbered with 32 bits.
-pub const LONGEST: u64 = u32::MAX as u64;
+/// Longest list: entries are numbered with 32 bits, and so is the first one behind the list that any
+/// lane of a launch looks for.
+pub const LONGEST: u64 = u32::MAX as u64 - (1 << 24);
 /// Most bytes that are read ahead beyond the last frame's demand: they take as long as a short
 /// wait.
 const MORE: usize = 1 << 18;

@@ -209,7 +209,8 @@ pub const SINGLE_MOST: f64 = f64::from_bits((1023 + 60) << 52);
 
 /// Error of the difference of two heights of corners in a direction: `5u` of f32, relative to the
 /// sum of `|n_k| |x_k|` over both. Four roundings each (difference, product, two sums); the fifth
-/// is for those of the bound, `40u` of it. Derived in `prim::direction`. Ratio.
+/// is room for the roundings of the bound itself, a dozen `u` of it. Derived in `prim::direction`.
+/// Ratio.
 pub const DIRECTION: f32 = 5.0 * U32;
 
 /// Largest extent, and one over the smallest, that a continuous test takes without scaling. Beyond

@@ -65,7 +65,7 @@ pub type Corners<R> = [Moving<R>; 3];
 /// there by at most `t` of the extent at the end. Boxes grow by that much, until the horizon. The
 /// part begins `3 ISOLATE_WINDOW` sooner. Suppose boxes of features meet only before the part, and
 /// those of their triangles only behind that. Then their windows are empty by more than they are
-/// widened.
+/// widened. Behind the end of the part a query without a horizon leaves them out by the same end.
 #[inline(always)]
 fn swept(p: &Corners<f32>, q: &Corners<f32>, gap: f32, horizon: f32) -> (bool, bool, [[Swept<f32>; 3]; 2]) {
     let mut window = Window::new();

@@ -118,14 +118,14 @@ fn meets_on<R: Real, S: Signs<R>>(
     }
     let mut unsure = false;
     if q_proper {
-        match edges_pierce::<R, S>(*p, p_of_q, *q) {
+        match edges_pierce::<R, S>(*p, p_of_q, *q, false) {
             Some(false) => {}
             Some(true) => return Some(true),
             None => unsure = true,
         }
     }
     if p_proper {
-        match edges_pierce::<R, S>(*q, q_of_p, *p) {
+        match edges_pierce::<R, S>(*q, q_of_p, *p, true) {
             Some(false) => {}
             Some(true) => return Some(true),
             None => unsure = true,
@@ -142,16 +142,22 @@ fn leaves(side: [i32; 3], i: usize) -> bool {
 }
 
 /// Whether an edge of `p` that leaves the plane of `q` meets `q`, which has area. `side` is of
-/// `p`'s corners. By value and out of line, as few pairs come here. So the common path keeps its
-/// corners in registers.
+/// `p`'s corners. `is_second` exchanges the edges in each sign, so that a sign of two edges has the
+/// order of [`points_of_sign`] and the same roundings. By value and out of line, as few pairs come
+/// here. So the common path keeps its corners in registers.
 #[inline(never)]
-fn edges_pierce<R: Real, S: Signs<R>>(p: [Vec3<R>; 3], side: [i32; 3], q: [Vec3<R>; 3]) -> Option<bool> {
+fn edges_pierce<R: Real, S: Signs<R>>(
+    p: [Vec3<R>; 3],
+    side: [i32; 3],
+    q: [Vec3<R>; 3],
+    is_second: bool,
+) -> Option<bool> {
     let mut unsure = false;
     for i in 0..3 {
         if !leaves(side, i) {
             continue;
         }
-        match line_stabs::<R, S>(p[i], p[(i + 1) % 3], &q) {
+        match line_stabs::<R, S>(p[i], p[(i + 1) % 3], &q, is_second) {
             Some(false) => {}
             Some(true) => return Some(true),
             None => unsure = true,
@@ -163,10 +169,17 @@ fn edges_pierce<R: Real, S: Signs<R>>(p: [Vec3<R>; 3], side: [i32; 3], q: [Vec3<
 /// Whether the line through `u` and `v`, which crosses the plane of `q` in one point, does so
 /// within `q`: it then passes all three edges on the same side, or touches.
 #[inline]
-fn line_stabs<R: Real, S: Signs<R>>(u: Vec3<R>, v: Vec3<R>, q: &[Vec3<R>; 3]) -> Option<bool> {
+fn line_stabs<R: Real, S: Signs<R>>(
+    u: Vec3<R>,
+    v: Vec3<R>,
+    q: &[Vec3<R>; 3],
+    is_second: bool,
+) -> Option<bool> {
     let (mut left, mut right, mut unsure) = (false, false, false);
     for k in 0..3 {
-        match S::orient3d(u, v, q[k], q[(k + 1) % 3]) {
+        let (x, y) = (q[k], q[(k + 1) % 3]);
+        let [a, b, c, d] = if is_second { [x, y, u, v] } else { [u, v, x, y] };
+        match S::orient3d(a, b, c, d) {
             Some(s) => {
                 left |= s < 0;
                 right |= s > 0;

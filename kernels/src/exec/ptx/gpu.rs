@@ -181,13 +181,12 @@ impl<const LANES: u32> Gpu<LANES> {
     /// A lane's value for all: lane 0 computes it.
     #[inline(always)]
     fn broadcast(&self, value: impl FnOnce() -> u64) -> u64 {
-        // Rare enough for a certain barrier, but in the inner loops of a warp.
-        if Self::ONE_WARP {
-            sync_warp()
-        } else {
-            reconverge()
+        if !Self::ONE_WARP {
+            // A block of several warps comes here seldom: a certain barrier costs nothing.
+            reconverge();
         }
         if Self::ONE_WARP {
+            sync_warp();
             let value = if self.lane.lane == 0 { value() } else { 0 };
             sync_warp();
             return u64::from(shuffle(value as u32, 0)) | u64::from(shuffle((value >> 32) as u32, 0)) << 32;

@@ -118,24 +118,26 @@ pub fn moller<R: Real, B: Block>(block: &mut B, args: &DiscreteArgs<R>) {
     });
 }
 
-/// The first test of two triangles; [`OPEN`] if it does not decide.
+/// The first test of two triangles: [`APART`] or [`LEFT`].
 struct Apart<R, F>(PhantomData<(R, F)>);
 
 /// Result of a test for two triangles that are apart.
 const APART: u32 = 0;
-/// For two that meet.
-const MEET: u32 = 1;
+/// For two that it leaves to the next one.
+const LEFT: u32 = 1;
+/// Result of all signs for two that meet.
+const MEET: u32 = 2;
 
 impl<R: Real, F: Frame<R>> RowMap for Apart<R, F> {
     type Number = R;
     type Row = [[Vec3<R>; 3]; 2];
     #[inline(always)]
     fn at_once(&self, [p, q]: [[Vec3<R>; 3]; 2]) -> u32 {
-        if F::are_apart(&p, &q) { APART } else { OPEN }
+        if F::are_apart(&p, &q) { APART } else { LEFT }
     }
 }
 
-/// All signs of two triangles; [`OPEN`] if they do not decide.
+/// All signs of two triangles: [`APART`], [`MEET`], or [`LEFT`] if they do not decide.
 struct Meet<R>(PhantomData<R>);
 
 impl<R: Real> RowMap for Meet<R> {
@@ -146,7 +148,7 @@ impl<R: Real> RowMap for Meet<R> {
         match meets_at_once(p, q) {
             Some(true) => MEET,
             Some(false) => APART,
-            None => OPEN,
+            None => LEFT,
         }
     }
 }
@@ -252,10 +254,12 @@ impl<B: Block> Decision<B> {
                 lane.meet();
             },
         );
-        for (verdict, list) in [(MEET, args.contacts), (OPEN, args.uncertain)] {
+        // Pairs that are tested beyond their common corners have no row, and are `OPEN`.
+        for (is_meeting, list) in [(true, args.contacts), (false, args.uncertain)] {
             block.phase(|lane| {
                 let (pair, found) = *self.pairs.of(lane);
-                self.entries.set(lane, (found == verdict).then_some(pair));
+                let is_mine = if is_meeting { found == MEET } else { (found == LEFT) | (found == OPEN) };
+                self.entries.set(lane, is_mine.then_some(pair));
             });
             self.entries.append(block, list);
         }

@@ -18,14 +18,15 @@
 //!          Outside of it no feature of one can meet one of the other.
 //!          A direction that parts two triangles throughout the step parts their features: such
 //!          pairs are left out first ([`crate::prim::direction`]).
-//!          With a known earliest time none is listed whose boxes first come within the gap behind
-//!          the horizon.
+//!          With a known earliest time most pairs are left out whose boxes first come within the gap
+//!          behind the horizon.
+//!          A pair that never comes within the gap may be listed or not, as its owners are parted.
 //! Room     vf, ee: counted past the end, grown, run again.
 //! Departs  the paper runs all 15 tests for every pair. Owners leave about 3, shorter sweeps 1.
 //!          Owners are the representative triangles of Curtis, Tamstorf, Manocha, "Fast collision
 //!          detection for deformable models using representative-triangles", 2008.
 //! Cost     8 B pair, 64 B facets, 192 B positions (gathered; at rest 96 B).
-//!          Directions take some 380 operations, for pairs that own a test. Those that they leave
+//!          Directions take some 420 operations, for pairs that own a test. Those that they leave
 //!          wait on chip until there is one a lane. The 15 tests take some 500 (at rest 300).
 //!          No branches; on a CPU in vectors.
 //!          Output is numbered in shared memory first, so that all lanes write.
@@ -34,7 +35,7 @@ use super::expect;
 use crate::abi::{Facet, FeaturesArgs, Pair};
 use crate::bvh::course::{Course, Gap};
 use crate::bvh::horizon::Horizon;
-use crate::exec::{Block, Lane, OPEN, RowMap, Shared, Slot};
+use crate::exec::{Block, Lane, RowMap, Shared, Slot};
 use crate::math::{Real, pick};
 use crate::prim::direction::parted;
 use crate::prim::sweep::MOST;
@@ -97,7 +98,7 @@ impl<R: Real, C: Course<R>> RowMap for Meeting<R, C> {
     }
 }
 
-/// Whether a direction parts two triangles: [`OPEN`] if none of those tried does.
+/// Whether a direction parts two triangles: [`APART`] or [`LEFT`].
 struct Parted<R, C> {
     gap: f32,
     course: PhantomData<(R, C)>,
@@ -105,6 +106,8 @@ struct Parted<R, C> {
 
 /// Result of [`Parted`] for triangles that are parted.
 const APART: u32 = 0;
+/// For others.
+const LEFT: u32 = 1;
 
 impl<R: Real, C: Course<R>> RowMap for Parted<R, C> {
     type Number = R;
@@ -115,7 +118,7 @@ impl<R: Real, C: Course<R>> RowMap for Parted<R, C> {
     fn at_once(&self, row: Self::Row) -> u32 {
         let [a, b, c, d, e, f, common] = row;
         let (p, q) = ([C::ends(a), C::ends(b), C::ends(c)], [C::ends(d), C::ends(e), C::ends(f)]);
-        if parted(&p, &q, self.gap, C::ends(common).t0[0] > R::ZERO) { APART } else { OPEN }
+        if parted(&p, &q, self.gap, C::ends(common).t0[0] > R::ZERO) { APART } else { LEFT }
     }
     const HAS_SINGLES: bool = R::WIDE;
     #[inline(always)]
@@ -128,7 +131,7 @@ impl<R: Real, C: Course<R>> RowMap for Parted<R, C> {
         let [a, b, c, d, e, f, common] = row;
         let of = |corner: C::Corner| C::ends(corner).narrow();
         let (p, q) = ([of(a), of(b), of(c)], [of(d), of(e), of(f)]);
-        if parted(&p, &q, self.gap, of(common).t0[0] > 0.0) { APART } else { OPEN }
+        if parted(&p, &q, self.gap, of(common).t0[0] > 0.0) { APART } else { LEFT }
     }
 }
 

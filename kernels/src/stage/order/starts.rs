@@ -2,7 +2,7 @@
 //! Paper    not in the paper.
 //! Launch   `sums`, then `starts`: a block a tile of bins.
 //! Reads    counts.   Writes   sums of tiles; starts; counts; the most contacts of a bin, if more
-//!          than [`RUN`](super::RUN).
+//!          than [`RUN`].
 //! Before   counts are complete; starts have two places for each word of counts.
 //! After    starts\[b\] = Σ counts before b; then counts = 0, for the next frame.
 //! Room     fixed; cannot run out.
