@@ -65,7 +65,7 @@ class Device:
     - `gpu`: number of a GPU. It gets a stream of its own.
     - `stream`: your stream, on the GPU that this thread is bound to: a stream of torch or cupy, an
       object with __cuda_stream__, or a handle (0: the default stream). All work goes there. It must
-      outlive the device.
+      outlive the device; its context also every answer and every array of one.
     - `memory_limit`: most bytes of device memory to take, at least 1. Default: all there are.
 
     Raises DeviceError if there is no such machine. Detectors of any threads may share a device: they
