@@ -5,7 +5,9 @@ use nearmiss::device::Device;
 use nearmiss::research::{DetectorExt, QueryExt};
 use nearmiss::scene::BodyId;
 use nearmiss::scene::{DeviceMotion, Motion};
-use nearmiss::{Body, Contacts, Detector, DeviceShare, Error, MultiDetector, Query, Scene, Stage, plan};
+use nearmiss::{
+    Body, Contacts, Detector, DeviceShare, Error, MultiDetector, Query, Scene, Stage, Stages, plan,
+};
 use std::ops::{Deref, DerefMut};
 
 /// A detector with its query. Everything else is that of the detector.
@@ -45,6 +47,24 @@ impl OneQuery {
     /// As [`DetectorExt::time_stages`]; stages are timed at first.
     pub fn time_stages(&mut self, are_timed: bool) {
         self.detector.time_stages(are_timed);
+    }
+
+    /// Runs `frame` so often, with stages timed or not, and returns the times of each run. Two runs
+    /// before do not count: a GPU launches the first one and records the second one.
+    ///
+    /// # Errors
+    /// Those of `frame`.
+    pub fn times(
+        &mut self,
+        are_timed: bool,
+        frames: u32,
+        mut frame: impl FnMut(&mut OneQuery) -> Result<Stages, Error>,
+    ) -> Result<Vec<Stages>, Error> {
+        self.time_stages(are_timed);
+        for _ in 0..2 {
+            frame(self)?;
+        }
+        (0..frames).map(|_| frame(self)).collect()
     }
 
     /// The query.

@@ -238,30 +238,21 @@ fn repeated(detector: &mut OneQuery, repeat: u32, is_gpu: bool) -> Result<(Conta
         let times = contacts.stats.stages;
         return Ok((contacts, times));
     }
-    let mut run = |are_timed: bool, frames: u32| -> Result<(Contacts, Stages), Error> {
-        detector.time_stages(are_timed);
-        let (mut last, mut runs) = (None, Vec::new());
-        // The first two frames are launched and recorded; later ones are replayed.
-        for frame in 0..frames + 2 {
+    let mut last = contacts;
+    let mut run = |are_timed: bool, frames: u32| {
+        let times = detector.times(are_timed, frames, |detector| {
             // A rebuilt tree would lose the front.
             if !keeps_front {
                 detector.rebuild()?;
             }
-            let contacts = detector.detect()?;
-            if frame >= 2 {
-                runs.push(contacts.stats.stages);
-            }
-            last = Some(contacts);
-        }
-        let last = last.ok_or_else(|| Error::Bug { what: "no frame ran".into() })?;
-        Ok((last, Stages::each(|stage| middle(runs.iter().map(stage).collect()))))
+            last = detector.detect()?;
+            Ok(last.stats.stages)
+        })?;
+        Ok::<_, Error>(Stages::each(|stage| middle(times.iter().map(stage).collect())))
     };
-    let (contacts, times) = run(false, repeat)?;
-    if !is_gpu {
-        return Ok((contacts, times));
-    }
-    let (_, stages) = run(true, repeat.min(MARKED))?;
-    Ok((contacts, times.with_stages(&stages)))
+    let times = run(false, repeat)?;
+    let times = if is_gpu { times.with_stages(&run(true, repeat.min(MARKED))?) } else { times };
+    Ok((last, times))
 }
 
 /// Frames at most that are run again for the times of their stages.

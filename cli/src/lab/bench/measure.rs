@@ -111,26 +111,19 @@ pub fn measure(
         detector.rebuild()?;
         detector.frame(&inputs)?;
     }
-    let (mut all, mut hashes, mut last, before) = (Vec::new(), Vec::new(), [0; 2], detector.reruns());
-    // Frames without marks between stages; then as many with them, for the times of stages.
-    detector.time_stages(!device.is_gpu());
-    for _ in 0..WARM_UP + frames {
+    let (mut hashes, mut last, before) = (Vec::new(), [0; 2], detector.reruns());
+    let mut frame = |detector: &mut OneQuery| {
         detector.rebuild()?;
         let found = detector.frame(&inputs)?;
-        all.push(found.stats.stages);
         hashes.push(found.hash());
         last = [found.stats.candidates, found.len() as u64];
-    }
-    all.drain(..WARM_UP as usize);
+        Ok(found.stats.stages)
+    };
+    // Frames without marks between stages; then as many with them, for the times of stages.
+    let mut all = detector.times(!device.is_gpu(), frames, &mut frame)?;
     if device.is_gpu() {
-        detector.time_stages(true);
-        for frame in 0..WARM_UP + frames {
-            detector.rebuild()?;
-            let marked = detector.frame(&inputs)?.stats.stages;
-            if let Some(at) = frame.checked_sub(WARM_UP) {
-                all[at as usize] = all[at as usize].with_stages(&marked);
-            }
-        }
+        let marked = detector.times(true, frames, &mut frame)?;
+        all.iter_mut().zip(&marked).for_each(|(times, stages)| *times = times.with_stages(stages));
     }
     let hash = one(&hashes, &called(case, question.name()))?;
     Ok(Measured {
