@@ -53,8 +53,9 @@ impl Demand {
     fn room(&self, rows: u64, device: &Device) -> u64 {
         let held = self.before.saturating_mul(self.row);
         let more = rows.saturating_sub(self.before).saturating_mul(self.row);
-        let free = (more >= LITTLE).then(memory::free).flatten().unwrap_or(u64::MAX);
-        held.saturating_add(free).saturating_add(device.spare_rows()).min(device.answers())
+        let free = (more >= LITTLE).then(memory::free).flatten();
+        let free = free.map_or(u64::MAX, |free| free.saturating_add(device.spare_rows()));
+        held.saturating_add(free).min(device.answers())
     }
 
     /// Refuses an answer of at least `rows` rows, earlier slices included, if there is no room for
