@@ -23,6 +23,13 @@ enum Mark {
     Ordered,
 }
 
+impl Mark {
+    /// Returns whether every frame passes it; others are for the times of stages.
+    fn is_always_passed(self) -> bool {
+        matches!(self, Mark::Begun | Mark::Found | Mark::Ordered)
+    }
+}
+
 /// Returns an empty record of launches, with the marks of a frame.
 ///
 /// # Errors
@@ -102,23 +109,24 @@ impl<R: Precision> QueryMemory<R> {
 
     fn stages(&mut self, scene: &mut SceneMemory<R>, fits: bool, marks: &mut Marks) -> Result<(), Error> {
         let times_stages = scene.device.times_stages();
-        let mut pass =
-            |mark: Mark, is_wanted: bool| if is_wanted { marks.pass(mark as usize) } else { Ok(()) };
+        let mut pass = |mark: Mark| {
+            if times_stages || mark.is_always_passed() { marks.pass(mark as usize) } else { Ok(()) }
+        };
         if fits {
-            pass(Mark::Begun, true)?;
+            pass(Mark::Begun)?;
             self.run(scene, Stage::Fit)?;
-            pass(Mark::Fitted, times_stages)?;
+            pass(Mark::Fitted)?;
             self.run(scene, Stage::Refit)?;
-            pass(Mark::Refitted, times_stages)?;
+            pass(Mark::Refitted)?;
         }
         self.counters.clear()?;
-        pass(Mark::Walks, times_stages)?;
+        pass(Mark::Walks)?;
         self.run(scene, Stage::Traverse)?;
-        pass(Mark::Walked, times_stages)?;
+        pass(Mark::Walked)?;
         self.run(scene, Stage::Narrow)?;
-        pass(Mark::Found, true)?;
+        pass(Mark::Found)?;
         self.run(scene, Stage::Order)?;
-        pass(Mark::Ordered, true)
+        pass(Mark::Ordered)
     }
 
     /// Returns the times of the stages, from their marks; waits for them.
