@@ -18,7 +18,7 @@ pub struct Gap<R> {
 }
 
 impl<R: Real> Gap<R> {
-    /// Of that length.
+    /// A gap of that length.
     pub fn of(gap: f64) -> Self {
         Gap { own: more(gap), single: more(gap) }
     }
@@ -44,6 +44,13 @@ pub trait Course<R: Real> {
     fn meeting_single(p: &[Self::Corner; 3], q: &[Self::Corner; 3], gap: f32, horizon: f32) -> u32;
 }
 
+/// A vertex in motion.
+#[inline(always)]
+pub fn moving<R: Real, L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32) -> Moving<R> {
+    let vertex = lane.read(frames.moving, vertex);
+    Moving { t0: vertex.t0.at, t1: vertex.t1.at }
+}
+
 /// Vertices move over a step.
 pub struct Moves;
 
@@ -55,8 +62,7 @@ impl<R: Real> Course<R> for Moves {
     }
     #[inline(always)]
     fn corner<L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32) -> Moving<R> {
-        let vertex = lane.read(frames.moving, vertex);
-        Moving { t0: vertex.t0.at, t1: vertex.t1.at }
+        moving(lane, frames, vertex)
     }
     #[inline(always)]
     fn filled(number: R) -> Moving<R> {

@@ -72,8 +72,8 @@ impl Heights {
     fn below(&self) -> f32 {
         self.q.lowest() - self.p.highest()
     }
-    /// Of triangles with a common first corner, whose height is 0: by how much the first one's
-    /// others are above it, or the second one's below it if that is less.
+    /// By how much the corners of triangles around a common first one are apart. Its height is 0: the
+    /// first triangle's others are above it, or the second one's below it if that is less.
     #[inline(always)]
     fn around(&self) -> f32 {
         self.p.low.lesser(-self.q.high)

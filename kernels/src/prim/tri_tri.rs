@@ -57,15 +57,8 @@ pub fn points_of_sign<T: Copy>(p: [T; 3], q: [T; 3], which: u32) -> [T; 4] {
     }
 }
 
-/// Sign number `which` of those of [`SIGNS`].
-#[inline]
-pub fn sign<R: Real, S: Signs<R>>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3], which: u32) -> Option<i32> {
-    let [a, b, c, d] = points_of_sign(*p, *q, which);
-    S::orient3d(a, b, c, d)
-}
-
-/// The result of [`meets`] for triangles with these signs, in the order of [`sign`]. `None` if it
-/// depends on a test within a plane.
+/// The result of [`meets`] for triangles with these signs, in the order of [`points_of_sign`].
+/// `None` if it depends on a test within a plane.
 pub fn decided(signs: &[i32; SIGNS as usize]) -> Option<bool> {
     let of = |i: usize| [signs[3 * i], signs[3 * i + 1], signs[3 * i + 2]];
     let (q_of_p, p_of_q) = (of(0), of(1));

@@ -5,7 +5,7 @@ use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::at_once::meets_at_once;
 use nearmiss_kernels::prim::moller::moller;
 use nearmiss_kernels::prim::tri_tri::{
-    Certain, Exact, Filter, SIGNS, Signs, Wide, decided, meets, meets_exactly, sign,
+    Certain, Exact, Filter, SIGNS, Signs, Wide, decided, meets, meets_exactly, points_of_sign,
 };
 use nearmiss_lab::oracle::{Triangle, triangles_meet};
 use rand::Rng;
@@ -46,7 +46,11 @@ fn in_order<R: Real>(p: &Triangle, q: &Triangle, order: usize, truth: bool) {
 
 /// The exact signs of two triangles, each by itself.
 fn all_signs<R: Real>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> [i32; SIGNS as usize] {
-    std::array::from_fn(|which| sign::<R, Exact>(p, q, which as u32).expect("the exact sign"))
+    let sign = |which| {
+        let [a, b, c, d] = points_of_sign(*p, *q, which as u32);
+        Exact::orient3d(a, b, c, d).expect("the exact sign")
+    };
+    std::array::from_fn(sign)
 }
 
 /// Each of the signs matters: with any one of them turned, some pair gets the other answer.

@@ -13,7 +13,7 @@
 //! Cost     a sign takes `wide` some 60 operations in f64, `exact` thousands on integers.
 
 use super::discrete::{Frame, corners};
-use super::{Entries, append_each, stride};
+use super::{Entries, append_each, sort_out, stride};
 use crate::abi::{DiscreteArgs, DiscreteFlags, Pair};
 use crate::exec::{Block, Lane, Slot};
 use crate::math::{Real, Vec3};
@@ -56,13 +56,10 @@ pub fn wide<F: Frame<f32>, B: Block>(block: &mut B, args: &DiscreteArgs<f32>) {
             };
             lane.meet();
         });
-        for (verdict, list) in [(Some(true), args.contacts), (None, args.uncertain)] {
-            block.phase(|lane| {
-                let (pair, found) = *verdicts.of(lane);
-                entries.set(lane, (found == verdict).then_some(pair));
-            });
-            entries.append(block, list);
-        }
+        sort_out(block, args, &mut entries, |lane, is_meeting| {
+            let (pair, found) = *verdicts.of(lane);
+            (found == is_meeting.then_some(true)).then_some(pair)
+        });
     });
 }
 

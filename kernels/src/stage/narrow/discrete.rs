@@ -24,7 +24,7 @@
 //!          40 for a pair of `Start` whose boxes are apart. 600 for all signs of another, without
 //!          branches; on a CPU in vectors.
 
-use super::{Entries, append_each, expect};
+use super::{Entries, append_each, expect, sort_out};
 use crate::abi::{DiscreteArgs, DiscreteFlags, Pair, Positions};
 use crate::exec::{Block, Lane, OPEN, RowMap, Slot};
 use crate::math::{Real, Vec3};
@@ -255,13 +255,10 @@ impl<B: Block> Decision<B> {
             },
         );
         // Pairs that are tested beyond their common corners have no row, and are `OPEN`.
-        for (is_meeting, list) in [(true, args.contacts), (false, args.uncertain)] {
-            block.phase(|lane| {
-                let (pair, found) = *self.pairs.of(lane);
-                let is_mine = if is_meeting { found == MEET } else { (found == LEFT) | (found == OPEN) };
-                self.entries.set(lane, is_mine.then_some(pair));
-            });
-            self.entries.append(block, list);
-        }
+        sort_out(block, args, &mut self.entries, |lane, is_meeting| {
+            let (pair, found) = *self.pairs.of(lane);
+            let is_mine = if is_meeting { found == MEET } else { (found == LEFT) | (found == OPEN) };
+            is_mine.then_some(pair)
+        });
     }
 }

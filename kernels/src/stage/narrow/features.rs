@@ -195,10 +195,10 @@ impl Two {
         &self,
         lane: &L,
         args: &FeaturesArgs<R>,
-    ) -> Option<[[C::Corner; 3]; 2]> {
+    ) -> [[C::Corner; 3]; 2] {
         let at = |vertex| C::corner(lane, &args.frames, vertex);
         let corners = |[x, y, z]: [u32; 3]| [at(x), at(y), at(z)];
-        Some([corners(self.p.corners), corners(self.q.corners)])
+        [corners(self.p.corners), corners(self.q.corners)]
     }
 }
 
@@ -238,7 +238,7 @@ pub fn features<R: Real, C: Course<R>, const HORIZON: bool, B: Block>(block: &mu
             block.map_rows(
                 &tests.boxes,
                 find,
-                |lane, two| two.meeting::<R, C, _>(lane, args),
+                |lane, two| Some(two.meeting::<R, C, _>(lane, args)),
                 |lane, result| {
                     let left = result
                         .and_then(|(two, mask)| (owned(&two.p, &two.q) & mask != 0).then_some(two.pair));
@@ -323,7 +323,7 @@ impl<R: Real, C: Course<R>, B: Block> Tests<R, C, B> {
         block.map_rows(
             &self.boxes,
             find,
-            |lane, two| two.meeting::<R, C, _>(lane, args),
+            |lane, two| Some(two.meeting::<R, C, _>(lane, args)),
             |lane, result| {
                 let mask = result.map_or(0, |(two, meeting)| owned(&two.p, &two.q) & meeting);
                 let mask = if HORIZON && *self.are_apart.of(lane) { 0 } else { mask };

@@ -29,7 +29,8 @@ pub mod separate;
 pub mod slice;
 pub mod solve;
 
-use crate::abi::{BodyTolerance, Output, Pair, Point, Positions, RungArgs, Span, earliest};
+use crate::abi::{BodyTolerance, DiscreteArgs, Output, Pair, Point, Positions, RungArgs, Span, earliest};
+use crate::bvh::course::moving;
 use crate::exec::{ALONE, Block, Lane, RowMap, Slot};
 use crate::math::{Real, Vec3};
 use crate::prim::cubic::Moving;
@@ -45,13 +46,6 @@ fn lower<L: Lane>(lane: &L, earliest: Span<u64>, verdict: Verdict) {
         lane.fetch_min(earliest, earliest::TIME, verdict.toi.to_bits());
         lane.fetch_min(earliest, earliest::KEY, key);
     }
-}
-
-/// A vertex in motion.
-#[inline(always)]
-fn moving<R: Real, L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32) -> Moving<R> {
-    let vertex = lane.read(frames.moving, vertex);
-    Moving { t0: vertex.t0.at, t1: vertex.t1.at }
 }
 
 /// The corners of a triangle, in motion.
@@ -182,6 +176,21 @@ fn stride<B: Block>(block: &mut B, count: u32, mut body: impl FnMut(&mut B, u32)
     while base < count {
         body(block, base);
         base += block.blocks() * lanes;
+    }
+}
+
+/// Appends the pairs of a block that meet to the contacts, and those that are not decided to the
+/// uncertain. `pair_of` returns a lane's pair if it is of that kind: one that meets, or not.
+#[inline(always)]
+fn sort_out<R: Real, B: Block>(
+    block: &mut B,
+    args: &DiscreteArgs<R>,
+    entries: &mut Entries<B, Pair>,
+    mut pair_of: impl FnMut(&B::Lane, bool) -> Option<Pair>,
+) {
+    for (is_meeting, list) in [(true, args.contacts), (false, args.uncertain)] {
+        block.phase(|lane| entries.set(lane, pair_of(lane, is_meeting)));
+        entries.append(block, list);
     }
 }
 
