@@ -234,8 +234,8 @@ mod tests {
 
     /// Returns rows as the device would write them.
     fn written(rows: &[ContactRow]) -> RowList<Contact> {
-        // SAFETY: the tests make no other rows than a kernel, but for the planted one, which the
-        // check refuses. They have numbers of 8 bytes, and are never changed.
+        // SAFETY: these rows are such as a kernel writes, except the planted one, which the check
+        // refuses. They have numbers of 8 bytes, and are never changed.
         unsafe { RowList::written(Arc::new(Written(rows.to_vec()))) }
     }
 

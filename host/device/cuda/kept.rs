@@ -16,7 +16,7 @@ const LEAST: usize = 1 << 16;
 const LARGE: usize = 64 << 20;
 /// Most blocks that no answer keeps. The ones that were used least recently are freed.
 const SPARE: usize = 16;
-/// Most bytes of them, but for one block of any size.
+/// Most bytes of them. One block of any size is kept.
 const SPARE_BYTES: usize = 1 << 30;
 /// Size from which on no new block is made for bytes that are read ahead: the answer may be refused.
 const CHECKED: usize = 16 << 20;
