@@ -47,7 +47,7 @@ impl Aabb {
     }
 
     /// Whether the closed boxes share a point. Exact: no rounding, no tolerance.
-    #[inline]
+    #[inline(always)]
     pub fn overlaps(&self, o: &Aabb) -> bool {
         // One expression without branches: six comparisons that the machine may do side by side.
         (self.lo[0] <= o.hi[0])
@@ -85,7 +85,7 @@ impl Volume for Aabb {
         let one = |k: usize| Real::max(self.lo[k].abs(), self.hi[k].abs());
         Real::max(one(0), Real::max(one(1), one(2)))
     }
-    #[inline]
+    #[inline(always)]
     fn overlaps(&self, other: &Self) -> bool {
         Aabb::overlaps(self, other)
     }

@@ -49,6 +49,7 @@ fn bounded(b: Aabb) -> Aabb {
 }
 
 impl Volume for Linear {
+    const BYTES: usize = core::mem::offset_of!(Linear, pad);
     const NESTS: bool = false;
 
     /// The same box at both ends.
@@ -93,34 +94,32 @@ impl Volume for Linear {
     /// Each axis has two conditions `f(t) = (1-t) d0 + t d1 >= 0`, with d0 and d1 differences of
     /// bounds. A computed difference has the right sign (subtraction underflows to nothing) and a
     /// relative error of u. If both are negative f is too, and the boxes are apart. If only one is,
-    /// f changes sign at `q = |d0| / (|d0| + |d1|)`. It is computed within
-    /// `((1+u)/(1-u))^2 < 1 + 5u` and half a subnormal.
+    /// f changes sign at `|d0| / (|d0| + |d1|)`. That is kept as numerator and denominator, together
+    /// within `3u + u^2`. At either end of the step at most one condition of an axis fails.
     ///
-    /// Suppose some t meets all six. Then each true lower end is at most each true upper one. So
-    /// the largest computed lower end is at most `10u` and a subnormal above the smallest computed
-    /// upper one. `MOVING_TIME` is `16u`, and adding it to a number of at most 1 loses less than
-    /// `2u`.
+    /// Products choose the last begin and the first end of the three axes. A wrong choice, by
+    /// rounding, overflow or underflow, is still a begin or an end, only not the one that decides:
+    /// then less is left out.
+    ///
+    /// Suppose some t meets all six. Then each true begin is at most each true end, so a computed
+    /// begin is at most `7u` above a computed end. The products of [`Window::is_empty`] and their
+    /// sum take another `4u`, or four halves of a subnormal. `MOVING_TIME` is `16u`, and the least
+    /// normal number is added.
     ///
     /// Bounds are finite and so small that no sum of differences overflows, or infinite outward.
-    /// Then a difference is infinite upward only. If it is d1, q is 0: no bound. If it is d0, q is
-    /// NaN, as it is if both are zero. Every comparison with NaN is false, so it clips nothing.
+    /// Then a difference is infinite upward only. If it is d1, the begin is finite over infinite. If
+    /// it is d0, the end is infinite over infinite. Neither is chosen: every comparison is one with
+    /// NaN or of infinities. Elsewhere a product that overflows is larger than one that does not,
+    /// and not larger than another that does.
     #[inline(always)]
     fn overlaps(&self, o: &Self) -> bool {
-        let (apart, from, to) = self.window(o);
-        !(apart | (from > to + MOVING_TIME))
-    }
-
-    /// The computed begin errs by less than `MOVING_TIME`.
-    #[inline(always)]
-    fn overlaps_before(&self, o: &Self, time: f32) -> bool {
-        let (apart, from, to) = self.window(o);
-        !(apart | (from > to + MOVING_TIME) | (from > time + MOVING_TIME))
+        !self.window(o).is_empty()
     }
 
     const IN_PARTS: bool = true;
     /// Whether they are not apart on one axis at both ends of the step, on the same side: six pairs
     /// of differences, and no division.
-    #[inline]
+    #[inline(always)]
     fn may_overlap(&self, o: &Self) -> bool {
         let mut apart = false;
         for k in 0..3 {
@@ -154,33 +153,59 @@ impl Volume for Linear {
     }
 }
 
-impl Linear {
-    /// Whether the boxes are apart on one axis throughout. Else the computed times between which
-    /// they overlap on all. Both ends together are wrong by less than `MOVING_TIME`.
+/// When two boxes overlap on all axes: two times as numerators and denominators, or never.
+#[derive(Clone, Copy, Debug)]
+pub struct Window {
+    /// Whether they are apart on one axis throughout.
+    pub is_apart: bool,
+    /// From then on.
+    pub from: [f32; 2],
+    /// Until then.
+    pub to: [f32; 2],
+}
+
+impl Window {
+    /// Whether it certainly has no time.
     #[inline(always)]
-    pub fn window(&self, o: &Self) -> (bool, f32, f32) {
-        let (mut apart, mut partly, mut from, mut to) = (false, false, 0.0f32, 1.0f32);
-        let mut d = [[0.0f32; 2]; 6];
+    pub fn is_empty(&self) -> bool {
+        let ([from, of_from], [to, of_to]) = (self.from, self.to);
+        let both = of_from * of_to;
+        self.is_apart | (from * of_to > to * of_from + MOVING_TIME * both + f32::MIN_POSITIVE)
+    }
+}
+
+impl Linear {
+    /// When the boxes overlap. Both ends together are wrong by less than `MOVING_TIME`.
+    #[inline(always)]
+    pub fn window(&self, o: &Self) -> Window {
+        let mut window = Window { is_apart: false, from: [0.0, 1.0], to: [1.0; 2] };
+        let mut d = [[[0.0f32; 2]; 2]; 3];
+        let mut is_partly = false;
         for k in 0..3 {
-            d[2 * k] = [o.hi0[k] - self.lo0[k], o.hi1[k] - self.lo1[k]];
-            d[2 * k + 1] = [self.hi0[k] - o.lo0[k], self.hi1[k] - o.lo1[k]];
-        }
-        for [d0, d1] in d {
-            let (before, after) = (d0 < 0.0, d1 < 0.0);
-            apart |= before & after;
-            partly |= before | after;
+            d[k][0] = [o.hi0[k] - self.lo0[k], o.hi1[k] - self.lo1[k]];
+            d[k][1] = [self.hi0[k] - o.lo0[k], self.hi1[k] - o.lo1[k]];
+            for [d0, d1] in d[k] {
+                let (before, after) = (d0 < 0.0, d1 < 0.0);
+                window.is_apart |= before & after;
+                is_partly |= before | after;
+            }
         }
         // Mostly the ends of the step are enough.
-        if ALONE && (apart | !partly) {
-            return (apart, from, to);
+        if ALONE && (window.is_apart | !is_partly) {
+            return window;
         }
-        for [d0, d1] in d {
-            let (before, after) = (d0 < 0.0, d1 < 0.0);
-            let q = d0.abs() / (d0.abs() + d1.abs());
-            from = if before & (q > from) { q } else { from };
-            to = if after & (q < to) { q } else { to };
+        for [p, q] in d {
+            // The condition that fails at the start, if one does, and the one that fails at the end.
+            let [d0, d1] = if p[0] < q[0] { p } else { q };
+            let (from, of_from) = (d0.abs(), d0.abs() + d1.abs());
+            let is_later = (d0 < 0.0) & (from * window.from[1] > window.from[0] * of_from);
+            window.from = if is_later { [from, of_from] } else { window.from };
+            let [d0, d1] = if p[1] < q[1] { p } else { q };
+            let (to, of_to) = (d0.abs(), d0.abs() + d1.abs());
+            let is_sooner = (d1 < 0.0) & (to * window.to[1] < window.to[0] * of_to);
+            window.to = if is_sooner { [to, of_to] } else { window.to };
         }
-        (apart, from, to)
+        window
     }
 }
 

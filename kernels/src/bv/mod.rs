@@ -54,6 +54,8 @@ pub const fn fills_node<V>() -> bool {
 
 /// A bounding volume: the part of a node that encloses everything below it.
 pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
+    /// Its first bytes; those behind them are zero.
+    const BYTES: usize = size_of::<Self>();
     /// Whether overlap tests nest: parts of two volumes that are apart are apart too. A safety
     /// slack prevents nesting: a small volume may overlap one that its larger parent does not.
     const NESTS: bool;
@@ -94,15 +96,8 @@ pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
     fn may_overlap(&self, other: &Self) -> bool {
         self.overlaps(other)
     }
-    /// Whether they overlap as in [`Volume::overlaps`], and not first behind a time in (0, 1]. True
-    /// also for an overlap by rounding alone. Volumes that it refuses certainly first overlap
-    /// behind that time.
-    #[inline(always)]
-    fn overlaps_before(&self, other: &Self, _time: f32) -> bool {
-        self.overlaps(other)
-    }
     /// The volume from t = 0 until a time in (0, 1), which becomes the end of the step. Or the
-    /// whole volume. Two volumes cut at the same time are tested by [`Volume::may_overlap`].
+    /// whole volume.
     #[inline(always)]
     fn until(&self, _time: f32) -> Self {
         *self

@@ -265,9 +265,9 @@ pub const INCLUSION_FLAT: f64 = 1.0 / 64.0;
 /// Largest finite bound of a moving box; a bound beyond it becomes infinite. `2^125`, so that
 /// differences of bounds and sums of two such differences stay finite. Length.
 pub const MOVING_LIMIT: f32 = f32::from_bits((125 + 127) << 23);
-/// Error of the two computed ends of an interval of time together, and of the sum that compares
-/// them: `16u` in all. Each end is a quotient in [0, 1] with two roundings on either side, `5u`.
-/// Fraction of the step.
+/// Error of the two computed ends of an interval of time together, and of their comparison: `16u`
+/// in all. Each end is a fraction in [0, 1] of which numerator and denominator are wrong by `3u`
+/// together; the products that compare them add `4u`. Fraction of the step.
 pub const MOVING_TIME: f32 = 16.0 * U32;
 
 /// Error of a mixture of two bounds of a moving box: `8u`. The complement, two products and a sum
@@ -280,9 +280,10 @@ pub const MOVING_MIXTURE: f32 = 8.0 * U32;
 /// Let `s` be the exact time at which those boxes first share a point. The volumes of the broad
 /// phase hold the features at every time, and so do the boxes of their triangles. So a pair left
 /// out there for `h` has `s > h`, too. The tests that leave pairs out are these:
-/// - `may_overlap` of volumes until `h`: they stay apart on one axis until then.
-/// - `overlaps_before`, the triangles' window and `rejected_before`: by a computed begin. It errs
-///   by less than the `MOVING_TIME` or `ISOLATE_WINDOW` that is subtracted.
+/// - `overlaps` of volumes until `h`, which hold the features until then: at no time until `h` do
+///   they share a point.
+/// - The triangles' window and `rejected_before`: by a computed begin. It errs by less than the
+///   `ISOLATE_WINDOW` that is subtracted.
 /// - The features' own boxes until `h`, derived in `prim::sweep`.
 ///
 /// A pair whose boxes never share a point is left out for `h` only if its window agrees. Then every

@@ -32,22 +32,24 @@ fn crossing(a: Exact, b: Exact) -> f64 {
 }
 
 /// Measured: how much later the computed begin of an overlap is than the exact one, and how much earlier the computed end,
-/// both together, of what decides.
+/// both together, of what decides, with the products that compare them.
 #[test]
 fn moving_time() {
     let ratio = |x: &[f64]| {
         let x: [f32; 8] = std::array::from_fn(|i| x[i] as f32);
         let [a, b] = boxes(&x);
-        let (apart, from, to) = a.window(&b);
+        let window = a.window(&b);
         let d = |i: usize, j: usize| Exact::of(x[i]) - Exact::of(x[j]);
         let [p, q, r, s] = [d(2, 0), d(3, 1), d(6, 4), d(7, 5)];
         let zero = Exact::zero();
-        if apart || p >= zero || q <= zero || r <= zero || s >= zero {
+        if window.is_apart || p >= zero || q <= zero || r <= zero || s >= zero {
             return f64::NAN;
         }
-        let late = f64::from(from) - crossing(p, q);
-        let early = crossing(r, s) - f64::from(to);
-        (late + early) / f64::from(MOVING_TIME)
+        let ([from, of_from], [to, of_to]) = (window.from, window.to);
+        let apart = f64::from(from * of_to) - f64::from(to * of_from);
+        let computed = apart / (f64::from(of_from) * f64::from(of_to));
+        let exact = crossing(p, q) - crossing(r, s);
+        (computed - exact) / f64::from(MOVING_TIME)
     };
     held("MOVING_TIME", "f32", &Hunt { starts: 24, ..Hunt::new(41) }.most::<f32>(|r| plain(r, 8), ratio));
 }
