@@ -1,13 +1,15 @@
 //! A block on the CPU: its phases are loops over its lanes.
 
 use crate::coherent;
+use crate::columns::Columns;
 use crate::prefetch::prefetch;
 use crate::rows::Rows;
 use crate::sanitizer::{Access, Place};
 use bytemuck::Pod;
 use nearmiss_kernels::abi::Span;
-use nearmiss_kernels::exec::{BINS, Block, Lane, OPEN, RowMap, Shared, Slot, WARP, Word};
+use nearmiss_kernels::exec::{BINS, Block, Lane, OPEN, Own, PairTest, RowMap, Shared, Slot, WARP, Word};
 use std::mem::MaybeUninit;
+use std::ops::Range;
 use std::ptr::with_exposed_provenance_mut;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed, Ordering::SeqCst, fence};
 
@@ -41,8 +43,9 @@ pub struct Emulated<W> {
     /// Shared memory, and its allocated bytes.
     words: Vec<u64>,
     taken: u32,
-    /// Memory for rows.
+    /// Memory for rows, and for columns.
     rows: Vec<u64>,
+    columns: Option<Box<Columns>>,
     watch: W,
 }
 
@@ -68,7 +71,8 @@ impl<T, W> Slot<T, EmulatedLane<W>> for PerLane<T> {
 impl<W: Watch> Emulated<W> {
     /// Block `block` of a launch.
     pub fn new(block: u32, blocks: u32, lanes: u32, watch: W) -> Self {
-        Emulated { block, blocks, lanes, phase: 0, words: Vec::new(), taken: 0, rows: Vec::new(), watch }
+        let (words, rows) = (Vec::new(), Vec::new());
+        Emulated { block, blocks, lanes, phase: 0, words, taken: 0, rows, columns: None, watch }
     }
     fn lane(&mut self, lane: u32) -> EmulatedLane<W> {
         EmulatedLane {
@@ -266,7 +270,7 @@ impl<W: Watch> Block for Emulated<W> {
         self.lanes
     }
     fn shared<T: Word>(&mut self, len: u32) -> Shared<T> {
-        let offset = self.taken.next_multiple_of(8);
+        let offset = self.taken.next_multiple_of(if size_of::<T>() > 8 { 16 } else { 8 });
         self.taken = offset + len * size_of::<T>() as u32;
         self.words.resize(self.taken.div_ceil(8) as usize, 0);
         Shared::at(offset, len)
@@ -321,6 +325,74 @@ impl<W: Watch> Block for Emulated<W> {
         self.rows = memory;
         self.phase += 1;
         watch.barrier();
+    }
+    #[inline(always)]
+    fn cross<T: Copy>(
+        &mut self,
+        items: Range<u32>,
+        first: u32,
+        mut test: impl FnMut(&EmulatedLane<W>, u32) -> Option<T>,
+        mut put: impl FnMut(&EmulatedLane<W>, u32, T),
+    ) -> u32 {
+        assert_eq!(self.lanes, WARP, "a block of one warp");
+        let (watch, mut next) = (self.watch, first);
+        for k in items {
+            let (mut found, mut passes) = ([None; WARP as usize], 0u32);
+            watch.lanes(WARP, self.phase, |lane| {
+                let of_lane = test(&self.lane(lane), k);
+                passes |= u32::from(of_lane.is_some()) << lane;
+                found[lane as usize] = of_lane;
+            });
+            self.phase += 1;
+            while passes != 0 {
+                let lane = passes.trailing_zeros();
+                passes &= passes - 1;
+                if let Some(found) = found[lane as usize] {
+                    put(&self.lane(lane), next, found);
+                    next += 1;
+                }
+            }
+            self.phase += 1;
+        }
+        watch.barrier();
+        next
+    }
+    fn cross_own<M: PairTest>(
+        &mut self,
+        items: Range<u32>,
+        first: u32,
+        item: impl Fn(&EmulatedLane<W>, u32) -> M::Item,
+        mut own: impl FnMut(&EmulatedLane<W>) -> Own<M::Item>,
+        mut put: impl FnMut(&EmulatedLane<W>, u32, [u32; 2]),
+    ) -> u32 {
+        assert_eq!(self.lanes, WARP, "a block of one warp");
+        let (mut columns, mut next) = (self.columns.take().unwrap_or_default(), first);
+        columns.clear();
+        // Of each column the lane, the name and the end.
+        let (mut whose, mut count) = ([[0; 3]; WARP as usize], 0);
+        for lane in 0..WARP {
+            let own = own(&self.lane(lane));
+            if own.end > items.start {
+                columns.push::<M>(&own.item);
+                whose[count] = [lane, own.name, own.end];
+                count += 1;
+            }
+        }
+        for k in items {
+            let mut passes = columns.test::<M>(&item(&self.lane(0), k));
+            while passes != 0 {
+                let [lane, name, end] = whose[passes.trailing_zeros() as usize];
+                passes &= passes - 1;
+                if k < end {
+                    put(&self.lane(lane), next, [k, name]);
+                    next += 1;
+                }
+            }
+        }
+        self.columns = Some(columns);
+        self.phase += 1;
+        self.watch.barrier();
+        next
     }
     fn load<T: Pod>(&self, span: Span<T>, i: u32) -> T {
         // Every lane reads it, so no lane may write it in this phase.

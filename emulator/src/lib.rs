@@ -3,6 +3,7 @@
 
 mod block;
 mod coherent;
+mod columns;
 mod compiled;
 mod engine;
 mod interrupt;

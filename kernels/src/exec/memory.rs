@@ -3,11 +3,12 @@
 use bytemuck::Pod;
 use core::marker::PhantomData;
 
-/// Elements of shared memory: whole words of four or eight bytes.
+/// Elements of shared memory: whole words of four, eight or sixteen bytes.
 pub trait Word: Pod {}
 impl Word for u32 {}
 impl Word for u64 {}
 impl Word for [u32; 2] {}
+impl Word for [u32; 4] {}
 
 /// Words of a block's shared memory: an offset in bytes from its start, and a length.
 #[derive(Debug)]

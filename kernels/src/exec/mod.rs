@@ -32,6 +32,7 @@ pub use ptx::ALONE;
 use crate::abi::Span;
 use bytemuck::Pod;
 use core::mem::MaybeUninit;
+use core::ops::Range;
 
 /// One lane of a block, inside a phase: its number and its access to memory.
 ///
@@ -145,6 +146,27 @@ pub trait RowMap {
     }
 }
 
+/// A test of two items, without memory. A lane of a GPU tests one pair at a time. A CPU tests many
+/// at once, in a loop that its compiler can vectorize: so no branch matters, and everything that
+/// the test calls is inlined.
+pub trait PairTest {
+    /// What is tested: whole words of four bytes, at most 16.
+    type Item: Pod;
+    /// The test. To be `#[inline(always)]`.
+    fn test(a: &Self::Item, b: &Self::Item) -> bool;
+}
+
+/// A lane's own item of [`Block::cross_own`].
+#[derive(Clone, Copy)]
+pub struct Own<T> {
+    /// The item.
+    pub item: T,
+    /// Its name.
+    pub name: u32,
+    /// Other items are tested with it that have smaller numbers.
+    pub end: u32,
+}
+
 /// The result for a row is still open.
 pub const OPEN: u32 = u32::MAX;
 
@@ -186,6 +208,37 @@ pub trait Block {
             let told = find(l).map(|which| (which, gather(l, which).map_or(OPEN, |row| map.apply(row))));
             scatter(l, told);
         });
+    }
+
+    /// A phase in which each lane tests numbered items, for blocks of one warp. A test that holds
+    /// gives a value; `put` receives it with its place, counted from `first` by items, then by
+    /// lanes. All lanes test an item before one of them puts, and put before the next item.
+    /// Returns the place behind the last.
+    fn cross<T: Copy>(
+        &mut self,
+        items: Range<u32>,
+        first: u32,
+        test: impl FnMut(&Self::Lane, u32) -> Option<T>,
+        put: impl FnMut(&Self::Lane, u32, T),
+    ) -> u32;
+
+    /// [`Block::cross`] of items that all lanes can read with each lane's own. A lane's own has a
+    /// name, and only items before its end are tested with it. `put` receives the place, the item's
+    /// number and that name.
+    #[inline(always)]
+    fn cross_own<M: PairTest>(
+        &mut self,
+        items: Range<u32>,
+        first: u32,
+        item: impl Fn(&Self::Lane, u32) -> M::Item,
+        mut own: impl FnMut(&Self::Lane) -> Own<M::Item>,
+        put: impl FnMut(&Self::Lane, u32, [u32; 2]),
+    ) -> u32 {
+        let test = |lane: &Self::Lane, k| {
+            let own = own(lane);
+            (M::test(&own.item, &item(lane, k)) & (k < own.end)).then_some([k, own.name])
+        };
+        self.cross(items, first, test, put)
     }
 
     /// A uniform read of device memory, between phases. Nothing in this launch may write it.

@@ -24,6 +24,7 @@ use nearmiss_kernels::abi::{
 use nearmiss_kernels::bvh::tiles::{self, Levels, Part, TILE};
 use nearmiss_kernels::entry::{self, Entry, Kernels};
 use nearmiss_kernels::math::Vec3;
+use nearmiss_kernels::stage::traverse::tile_triangles::turns;
 use std::collections::BTreeSet;
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -226,7 +227,8 @@ where
     let few = || device.blocks_striding::<Pairs>((seeking * TILE) as usize);
     let blocks = if device.is_gpu() { seeking } else { few() };
     launch::blocks::<Pairs>(device, blocks, pairs)?;
-    launch::at_once::<Triangles>(device, u32::MAX as usize, triangles)
+    let resident = device.blocks_at_once::<Triangles>(u32::MAX as usize)?;
+    launch::blocks::<Triangles>(device, resident * turns::<V>(), triangles)
 }
 
 impl<R: Precision, V: Kernels> CandidateSearch<R> for Tiles<V> {

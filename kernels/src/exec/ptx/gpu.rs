@@ -14,6 +14,7 @@ use core::arch::nvptx::{
     _block_idx_x as block_idx_x, _grid_dim_x as grid_dim_x, _thread_idx_x as thread_idx_x,
 };
 use core::mem::MaybeUninit;
+use core::ops::Range;
 use core::sync::atomic::Ordering::Relaxed;
 
 /// A panic stops the launch: the host sees an error, never half an answer.
@@ -221,7 +222,7 @@ impl<const LANES: u32> Block for Gpu<LANES> {
     }
     #[inline(always)]
     fn shared<T: Word>(&mut self, len: u32) -> Shared<T> {
-        let offset = self.taken.next_multiple_of(8);
+        let offset = self.taken.next_multiple_of(if size_of::<T>() > 8 { 16 } else { 8 });
         self.taken = offset + len * size_of::<T>() as u32;
         Shared::at(offset, len)
     }
@@ -237,6 +238,29 @@ impl<const LANES: u32> Block for Gpu<LANES> {
     fn phase(&mut self, mut body: impl FnMut(&Thread)) {
         body(&self.lane);
         self.barrier();
+    }
+    #[inline(always)]
+    fn cross<T: Copy>(
+        &mut self,
+        items: Range<u32>,
+        first: u32,
+        mut test: impl FnMut(&Thread, u32) -> Option<T>,
+        mut put: impl FnMut(&Thread, u32, T),
+    ) -> u32 {
+        const { assert!(LANES == WARP) };
+        let (lane, mut next) = (self.lane, first);
+        for k in items {
+            let found = test(&lane, k);
+            sync_warp();
+            let all = ballot(found.is_some());
+            let before = all & ((1 << lane.lane) - 1);
+            if let Some(found) = found {
+                put(&lane, next + before.count_ones(), found);
+            }
+            next += all.count_ones();
+        }
+        sync_warp();
+        next
     }
     #[inline(always)]
     fn load<T: Pod>(&self, span: Span<T>, i: u32) -> T {

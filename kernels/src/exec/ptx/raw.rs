@@ -150,16 +150,41 @@ pub fn store_shared64(at: u32, v: u64) {
     // SAFETY: as for `load_shared32`.
     unsafe { asm!("st.shared.b64 [{}], {};", in(reg32) at, in(reg64) v) }
 }
+/// Sixteen bytes at once.
+#[inline(always)]
+fn load_shared128(at: u32) -> [u32; 4] {
+    let (a, b, c, d): (u32, u32, u32, u32);
+    // SAFETY: as for `load_shared32`. It reads memory and does nothing else: what is not used is not
+    // read.
+    unsafe {
+        asm!("ld.shared.v4.b32 {{ {a}, {b}, {c}, {d} }}, [{at}];", a = lateout(reg32) a,
+            b = lateout(reg32) b, c = lateout(reg32) c, d = lateout(reg32) d, at = in(reg32) at,
+            options(pure, readonly, nostack));
+    }
+    [a, b, c, d]
+}
+#[inline(always)]
+fn store_shared128(at: u32, [a, b, c, d]: [u32; 4]) {
+    // SAFETY: as for `load_shared32`.
+    unsafe {
+        asm!("st.shared.v4.b32 [{at}], {{ {a}, {b}, {c}, {d} }};", at = in(reg32) at, a = in(reg32) a,
+            b = in(reg32) b, c = in(reg32) c, d = in(reg32) d)
+    }
+}
 #[inline(always)]
 pub fn load_word<T: Word>(at: u32) -> T {
-    if size_of::<T>() == 4 { bytemuck::cast(load_shared32(at)) } else { bytemuck::cast(load_shared64(at)) }
+    match size_of::<T>() {
+        4 => bytemuck::cast(load_shared32(at)),
+        8 => bytemuck::cast(load_shared64(at)),
+        _ => bytemuck::cast(load_shared128(at)),
+    }
 }
 #[inline(always)]
 pub fn store_word<T: Word>(at: u32, v: T) {
-    if size_of::<T>() == 4 {
-        store_shared32(at, bytemuck::cast(v));
-    } else {
-        store_shared64(at, bytemuck::cast(v));
+    match size_of::<T>() {
+        4 => store_shared32(at, bytemuck::cast(v)),
+        8 => store_shared64(at, bytemuck::cast(v)),
+        _ => store_shared128(at, bytemuck::cast(v)),
     }
 }
 #[inline(always)]

@@ -20,7 +20,7 @@ use crate::exec::{Block, Lane, Slot};
 pub const LANES: u32 = TILE * FAN;
 
 /// Shared memory of a block.
-pub const fn shared_bytes<V>() -> u32 {
+pub const fn shared_bytes<V: Volume>() -> u32 {
     OnChip::bytes::<V>(LANES)
 }
 

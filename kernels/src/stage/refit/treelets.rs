@@ -28,7 +28,7 @@ use crate::math::Real;
 const SLOTS: u32 = 2 * TREELET;
 
 /// Shared memory of a block: volumes, merges, ends of rounds.
-pub const fn shared_bytes<V>() -> u32 {
+pub const fn shared_bytes<V: Volume>() -> u32 {
     OnChip::bytes::<V>(SLOTS) + SLOTS * size_of::<Merge>() as u32 + 4 * MAX_LEVELS
 }
 
