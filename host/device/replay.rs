@@ -33,6 +33,12 @@ pub enum Act {
     },
     /// The event of that number.
     Mark(usize),
+    /// What follows, until [`Act::Back`], comes after what went before and beside what follows that.
+    Aside,
+    /// See [`Act::Aside`].
+    Back,
+    /// What follows comes after what went beside.
+    Join,
 }
 
 /// The steps of a device, in order.
@@ -49,7 +55,7 @@ impl Listing {
     pub fn acts(&self) -> impl Iterator<Item = (Act, &[u64])> {
         self.acts.iter().map(|&act| match act {
             Act::Launch { args, .. } => (act, &self.args[args..]),
-            Act::Fill { .. } | Act::Mark(_) => (act, [].as_slice()),
+            _ => (act, [].as_slice()),
         })
     }
 
@@ -195,6 +201,29 @@ impl Replay {
 }
 
 impl Device {
+    /// Does work beside what follows, until [`Device::join`]. Neither needs what the other writes.
+    /// It is done in its turn on a CPU, outside a replay, and when stages are timed.
+    ///
+    /// # Errors
+    /// Errors of the work.
+    pub(crate) fn beside(&self, work: impl FnOnce() -> Result<(), Error>) -> Result<(), Error> {
+        self.lists(Act::Aside);
+        let done = work();
+        self.lists(Act::Back);
+        done
+    }
+
+    /// What follows comes after all work that went beside.
+    pub(crate) fn join(&self) {
+        self.lists(Act::Join);
+    }
+
+    fn lists(&self, act: Act) {
+        if !self.times_stages() {
+            held::list(&self.usage, |list| list.push(act));
+        }
+    }
+
     /// Whether work may be listed. It may not be on the default stream, nor on one that its owner
     /// captures, which needs the work itself.
     fn can_list(&self) -> Result<bool, Error> {

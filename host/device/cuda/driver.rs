@@ -147,6 +147,7 @@ functions! {
         cuGraphDestroy(CUgraph);
         cuEventCreate(*mut CUevent, c_uint);
         cuEventRecordWithFlags(CUevent, CUstream, c_uint);
+        cuStreamWaitEvent(CUstream, CUevent, c_uint);
         cuEventSynchronize(CUevent);
         cuEventElapsedTime(*mut f32, CUevent, CUevent);
         cuEventDestroy_v2(CUevent);

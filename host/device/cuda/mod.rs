@@ -31,7 +31,7 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use stream::Stream;
+use stream::{Side, Stream};
 use types::{CUcontext, CUstream};
 
 /// The stamp of the sources of this program.
@@ -57,6 +57,8 @@ pub struct Cuda {
     stream: Stream,
     /// The stream for recording graphs, one at a time. Nothing else uses it meanwhile.
     recorder: Mutex<Stream>,
+    /// The stream for work that goes beside.
+    side: Mutex<Side>,
     context: Arc<Context>,
 }
 
@@ -123,6 +125,7 @@ impl Cuda {
         is_ours(stamped.global(&bound, c"NEARMISS_STAMP").map_err(refused("reading the kernels' stamp"))?)?;
         let staging = Staging::new(&context, &bound)?;
         let recorder = Stream::new(&context).map_err(refused("making a stream"))?;
+        let side = Side::new(&context, &bound).map_err(refused("making a stream"))?;
         drop(bound);
         Ok(Cuda {
             name,
@@ -135,6 +138,7 @@ impl Cuda {
             functions: Mutex::default(),
             stream,
             recorder: Mutex::new(recorder),
+            side: Mutex::new(side),
             context,
         })
     }
@@ -278,18 +282,36 @@ impl Cuda {
         list: &Listing,
         mut pass: impl FnMut(usize) -> Result<(), Refusal>,
     ) -> Result<(), Refusal> {
-        let functions = locked(&self.functions);
-        list.acts().try_for_each(|(act, args)| match act {
-            Act::Launch { kernel, grid, .. } => {
-                let function = functions.get(kernel).ok_or(Refusal(types::CUDA_ERROR_NOT_FOUND))?;
-                // SAFETY: the caller's promise.
-                unsafe { function.launch(gpu, stream, grid, args) }
+        let (functions, mut side) = (locked(&self.functions), locked(&self.side));
+        let mut is_aside = false;
+        let done = list.acts().try_for_each(|(act, args)| {
+            let own = if is_aside { side.stream() } else { stream };
+            match act {
+                Act::Launch { kernel, grid, .. } => {
+                    let function = functions.get(kernel).ok_or(Refusal(types::CUDA_ERROR_NOT_FOUND))?;
+                    // SAFETY: the caller's promise.
+                    unsafe { function.launch(gpu, own, grid, args) }
+                }
+                Act::Fill { bytes: 0, .. } => Ok(()),
+                Act::Fill { addr, bytes, byte } => {
+                    // SAFETY: the caller's promise.
+                    unsafe { memory::fill(gpu, own, addr, bytes, byte) }
+                }
+                Act::Mark(which) => pass(which),
+                Act::Aside => {
+                    is_aside = true;
+                    side.part(gpu, stream)
+                }
+                Act::Back => {
+                    is_aside = false;
+                    Ok(())
+                }
+                Act::Join => side.meet(gpu, stream),
             }
-            Act::Fill { bytes: 0, .. } => Ok(()),
-            // SAFETY: the caller's promise.
-            Act::Fill { addr, bytes, byte } => unsafe { memory::fill(gpu, stream, addr, bytes, byte) },
-            Act::Mark(which) => pass(which),
-        })
+        });
+        // Also after a refusal: nothing is freed before what was launched has ended.
+        let met = side.meet(gpu, stream);
+        done.and(met)
     }
 
     /// Number of blocks of a kernel that run at once. It depends on registers and shared memory.

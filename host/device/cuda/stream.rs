@@ -65,6 +65,12 @@ impl Stream {
         // SAFETY: the stream lives.
         answer(unsafe { (gpu.cuStreamSynchronize)(self.handle) })
     }
+
+    /// Puts what follows here after an event of another stream; in a capture, too.
+    pub fn follow(&self, gpu: &Bound, event: &Event) -> Result<(), Refusal> {
+        // SAFETY: both live.
+        answer(unsafe { (gpu.cuStreamWaitEvent)(self.handle, event.handle, types::CU_EVENT_WAIT_DEFAULT) })
+    }
 }
 
 impl Drop for Stream {
@@ -140,5 +146,44 @@ impl Drop for Event {
             // it. A refusal cannot be reported.
             let _ = unsafe { (gpu.cuEventDestroy_v2)(self.handle) };
         }
+    }
+}
+
+/// A second stream, for work that goes beside that of another.
+pub struct Side {
+    stream: Stream,
+    /// Where the two part, and where they meet.
+    event: Event,
+    /// Whether the other stream has not met it since.
+    is_away: bool,
+}
+
+impl Side {
+    /// Makes one.
+    pub fn new(context: &Arc<Context>, gpu: &Bound) -> Result<Side, Refusal> {
+        Ok(Side { stream: Stream::new(context)?, event: Event::new(context, gpu)?, is_away: false })
+    }
+
+    /// The stream.
+    pub fn stream(&self) -> &Stream {
+        &self.stream
+    }
+
+    /// Puts what follows here after the work so far of the other.
+    pub fn part(&mut self, gpu: &Bound, other: &Stream) -> Result<(), Refusal> {
+        self.event.record(gpu, other)?;
+        self.stream.follow(gpu, &self.event)?;
+        self.is_away = true;
+        Ok(())
+    }
+
+    /// Puts what follows in the other stream after all work here.
+    pub fn meet(&mut self, gpu: &Bound, other: &Stream) -> Result<(), Refusal> {
+        if self.is_away {
+            self.event.record(gpu, &self.stream)?;
+            other.follow(gpu, &self.event)?;
+            self.is_away = false;
+        }
+        Ok(())
     }
 }

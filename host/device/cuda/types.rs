@@ -39,6 +39,7 @@ pub const CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MINOR: CUdevice_attribute = 76;
 pub const CU_EVENT_DEFAULT: u32 = 0;
 pub const CU_EVENT_RECORD_DEFAULT: u32 = 0;
 pub const CU_EVENT_RECORD_EXTERNAL: u32 = 1;
+pub const CU_EVENT_WAIT_DEFAULT: u32 = 0;
 pub const CU_STREAM_CAPTURE_MODE_THREAD_LOCAL: CUstreamCaptureMode = 1;
 pub const CU_STREAM_CAPTURE_STATUS_NONE: CUstreamCaptureStatus = 0;
 pub const CU_STREAM_NON_BLOCKING: u32 = 1;
@@ -122,6 +123,7 @@ mod tests {
             (CU_EVENT_DEFAULT, sys::CUevent_flags::CU_EVENT_DEFAULT as u32),
             (CU_EVENT_RECORD_DEFAULT, sys::CUevent_record_flags::CU_EVENT_RECORD_DEFAULT as u32),
             (CU_EVENT_RECORD_EXTERNAL, sys::CUevent_record_flags::CU_EVENT_RECORD_EXTERNAL as u32),
+            (CU_EVENT_WAIT_DEFAULT, sys::CUevent_wait_flags::CU_EVENT_WAIT_DEFAULT as u32),
             (
                 CU_STREAM_CAPTURE_MODE_THREAD_LOCAL,
                 sys::CUstreamCaptureMode::CU_STREAM_CAPTURE_MODE_THREAD_LOCAL as u32,

@@ -41,12 +41,13 @@ impl Capacities {
 /// A step of the phase.
 #[derive(Clone, Copy)]
 enum Step {
-    /// Counts the triangle pairs that share a point at the start.
-    Start,
     /// Lists vertex/face and edge/edge candidates.
     Features,
     /// Lists those that may meet.
     Cull,
+    /// Counts the triangle pairs that share a point at the start, beside the next step: that one is
+    /// mostly a wait for few pairs.
+    Start,
     /// Solves for contacts.
     Solve,
 }
@@ -148,11 +149,12 @@ impl ContinuousNarrow {
 
     /// Returns the steps, in order. With a separation there is no cull: signs could reject no pair.
     fn all_steps(&self) -> &'static [Step] {
-        let all = match self.survivors {
-            Some(_) => &[Step::Start, Step::Features, Step::Cull, Step::Solve][..],
-            None => &[Step::Start, Step::Features, Step::Solve],
-        };
-        if self.start.is_some() { all } else { &all[1..] }
+        match (&self.survivors, &self.start) {
+            (Some(_), Some(_)) => &[Step::Features, Step::Cull, Step::Start, Step::Solve],
+            (Some(_), None) => &[Step::Features, Step::Cull, Step::Solve],
+            (None, Some(_)) => &[Step::Features, Step::Start, Step::Solve],
+            (None, None) => &[Step::Features, Step::Solve],
+        }
     }
 
     /// Returns whether its contacts are proven.
@@ -271,9 +273,10 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
     fn run(&mut self, step: usize, given: &NarrowContext<R>) -> Result<(), Error> {
         match self.all_steps()[step] {
             // A sample has only a part of the candidates, and none of it is counted.
-            Step::Start => {
-                self.start.iter().filter(|_| !given.is_sample).try_for_each(|start| start.run(given))
-            }
+            Step::Start => match self.start.as_ref().filter(|_| !given.is_sample) {
+                Some(start) => given.device.beside(|| start.run(given)),
+                None => Ok(()),
+            },
             Step::Features => {
                 let gap = self.solver.certified().filter(|certified| certified.is_apart());
                 let known = self.known(given.is_sample);

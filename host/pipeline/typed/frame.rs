@@ -112,6 +112,7 @@ impl<R: Precision> QueryMemory<R> {
         let mut pass = |mark: Mark| {
             if times_stages || mark.is_always_passed() { marks.pass(mark as usize) } else { Ok(()) }
         };
+        scene.device.beside(|| self.counters.clear())?;
         if fits {
             pass(Mark::Begun)?;
             self.run(scene, Stage::Fit)?;
@@ -119,13 +120,14 @@ impl<R: Precision> QueryMemory<R> {
             self.run(scene, Stage::Refit)?;
             pass(Mark::Refitted)?;
         }
-        self.counters.clear()?;
+        scene.device.join();
         pass(Mark::Walks)?;
         self.run(scene, Stage::Traverse)?;
         pass(Mark::Walked)?;
         self.run(scene, Stage::Narrow)?;
         pass(Mark::Found)?;
         self.run(scene, Stage::Order)?;
+        scene.device.join();
         pass(Mark::Ordered)
     }
 

@@ -249,10 +249,13 @@ impl<R: Precision> QueryMemory<R> {
         seen: Span<u64>,
     ) -> Result<(), Error> {
         scene.broads[self.broad].phase.set_margin(growth(self.query.listed_within()));
-        self.counters.clear()?;
-        [Stage::Fit, Stage::Refit, Stage::Traverse, Stage::Narrow, Stage::Order]
+        scene.device.beside(|| self.counters.clear())?;
+        [Stage::Fit, Stage::Refit].into_iter().try_for_each(|stage| self.run(scene, stage))?;
+        scene.device.join();
+        [Stage::Traverse, Stage::Narrow, Stage::Order]
             .into_iter()
             .try_for_each(|stage| self.run(scene, stage))?;
+        scene.device.join();
         let (lists, all) = (self.narrow.answer(&scene.features), self.counters.counters());
         let count = |which: Option<&Counter>| which.map_or(Span::EMPTY, |&which| all.word(which));
         let args = StatusArgs {
