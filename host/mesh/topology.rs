@@ -8,8 +8,14 @@ pub const NO_EDGE: u32 = u32::MAX;
 /// The edges of a mesh, and the one face that owns each vertex and edge.
 ///
 /// By ownership a pass over pairs of faces tests each feature pair exactly once: a face tests only
-/// its own features. The owner is the face of smallest index with that vertex or edge, at its first
-/// corner that has it. A vertex that no face uses has no owner.
+/// its own features. Few faces own much, since a pair of faces that own nothing takes no test:
+///
+/// 1. Each face in sequence whose three edges have no owner yet owns them. Then each whose last two
+///    do, then one.
+/// 2. In the same way vertices go to faces that own an edge, then to others.
+///
+/// A face owns a vertex at its first corner that has it, and an edge likewise. A vertex that no face
+/// uses has no owner.
 ///
 /// Edge `k` of a face joins its corners `k` and `k + 1` (mod 3). If a face repeats an index, the
 /// two equal corners form no edge: the id is [`NO_EDGE`], without an owner. Their point is still
@@ -46,7 +52,7 @@ impl Topology {
         let mut topology = Topology {
             edges: Vec::with_capacity(corners.len() / 2 + 2),
             face_edges: vec![[NO_EDGE; 3]; faces.len()],
-            owners: vertex_owners(faces, vertex_count, looks)?,
+            owners: vec![0; faces.len()],
         };
         for (larger, ends) in starts.windows(2).enumerate() {
             if larger % PIECE == 0 && looks.ends() {
@@ -59,14 +65,15 @@ impl Topology {
                 let (smaller, corner) = ((packed >> 32) as u32, packed as u32);
                 let (face, k) = (corner as usize / 3, corner as usize % 3);
                 if last != Some(smaller) {
-                    // The first of its run: the smallest face, at its first corner.
                     last = Some(smaller);
                     topology.edges.push([larger as u32, smaller]);
-                    topology.owners[face] |= 1 << (3 + k);
                 }
                 topology.face_edges[face][k] = topology.edges.len() as u32 - 1;
             }
         }
+        let Topology { edges, face_edges, owners } = &mut topology;
+        own(owners, (face_edges, 3), edges.len(), &[|_| true], looks)?;
+        own(owners, (faces, 0), vertex_count, &[|owned| owned != 0, |_| true], looks)?;
         Some(topology)
     }
 }
@@ -118,20 +125,36 @@ fn by_larger_vertex(faces: &[[u32; 3]], vertex_count: usize, looks: &Looks) -> O
     Some((starts, corners))
 }
 
-fn vertex_owners(faces: &[[u32; 3]], vertex_count: usize, looks: &Looks) -> Option<Vec<u32>> {
-    let mut owned = vec![false; vertex_count];
-    let mut owners = Vec::with_capacity(faces.len());
-    for piece in pieces(faces, looks) {
-        owners.extend(piece?.1.iter().map(|face| {
-            let mut bits = 0;
-            for (k, &vertex) in face.iter().enumerate() {
-                let first = !std::mem::replace(&mut owned[vertex as usize], true);
-                bits |= u32::from(first) << k;
+/// Gives each of `count` vertices or edges of faces an owner, and sets its bit from `shift` on. In
+/// each of `stages`, faces that may own get three at once, then two, then one.
+fn own(
+    owners: &mut [u32],
+    (faces, shift): (&[[u32; 3]], u32),
+    count: usize,
+    stages: &[fn(u32) -> bool],
+    looks: &Looks,
+) -> Option<()> {
+    let mut is_owned = vec![false; count];
+    for (may_own, number) in stages.iter().flat_map(|may_own| [3, 2, 1].map(|number| (may_own, number))) {
+        for piece in pieces(faces, looks) {
+            let (first, piece) = piece?;
+            for (face, owner) in piece.iter().zip(&mut owners[first..]) {
+                if !may_own(*owner) {
+                    continue;
+                }
+                let mut bits = 0;
+                for (k, &at) in face.iter().enumerate() {
+                    let is_first = at != NO_EDGE && !face[..k].contains(&at);
+                    bits |= u32::from(is_first && !is_owned[at as usize]) << k;
+                }
+                if bits.count_ones() == number {
+                    (0..3).filter(|k| bits >> k & 1 == 1).for_each(|k| is_owned[face[k] as usize] = true);
+                    *owner |= bits << shift;
+                }
             }
-            bits
-        }));
+        }
     }
-    Some(owners)
+    Some(())
 }
 
 #[cfg(test)]
@@ -151,9 +174,9 @@ mod tests {
         let made = || Topology::within(&faces, vertices, &Looks::new(Some(&interrupt)));
         interrupt.trigger_at(u64::MAX);
         assert!(made().is_some_and(|made| made == wanted));
-        // Two passes for the ranges, one for the owners, one for the edges.
+        // Two passes for the ranges, one for the edges, nine for the owners.
         let looks = u64::MAX - interrupt.looks_left();
-        assert_eq!(looks, 4 * pieces as u64);
+        assert_eq!(looks, 12 * pieces as u64);
         for look in 1..=looks {
             interrupt.trigger_at(look);
             assert!(made().is_none(), "look {look}");

@@ -2,7 +2,7 @@
 //! construction's tricks.
 
 use super::topology::{NO_EDGE, Topology};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// The first violation of a [`Topology`]'s definition.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -89,15 +89,11 @@ pub fn check(topology: &Topology, faces: &[[u32; 3]]) -> Result<(), Violation> {
         }
     }
     let ids: HashMap<[u32; 2], u32> = edges.iter().copied().zip(0..).collect();
-    let mut edge_owner = HashMap::new();
-    let mut vertex_owner = HashMap::new();
+    let expected_owners = owners_of(faces);
+    let mut used = HashSet::new();
     for (face, corners) in faces.iter().enumerate() {
-        let mut expected_bits = 0;
         for k in 0..3 {
             let (a, b) = (corners[k], corners[(k + 1) % 3]);
-            if *vertex_owner.entry(a).or_insert((face, k)) == (face, k) {
-                expected_bits |= 1 << k;
-            }
             let expected = if a == b {
                 NO_EDGE
             } else {
@@ -107,16 +103,50 @@ pub fn check(topology: &Topology, faces: &[[u32; 3]]) -> Result<(), Violation> {
             if found != expected {
                 return Err(Violation::FaceEdge { face, k, found, expected });
             }
-            if a != b && *edge_owner.entry(expected).or_insert((face, k)) == (face, k) {
-                expected_bits |= 1 << (3 + k);
-            }
+            used.insert(expected);
         }
-        if owners[face] != expected_bits {
-            return Err(Violation::Owner { face, found: owners[face], expected: expected_bits });
+        let (found, expected) = (owners[face], expected_owners[face]);
+        if found != expected {
+            return Err(Violation::Owner { face, found, expected });
         }
     }
-    match (0..edges.len()).find(|&edge| !edge_owner.contains_key(&(edge as u32))) {
+    match (0..edges.len()).find(|&edge| !used.contains(&(edge as u32))) {
         Some(edge) => Err(Violation::Stray { edge }),
         None => Ok(()),
     }
+}
+
+/// Owner bits by definition: who takes features is found for one face at a time, by their names.
+fn owners_of(faces: &[[u32; 3]]) -> Vec<u32> {
+    // Features of a face that it may own, each with its bit: a vertex twice, or an edge by its ends.
+    let vertices = |face: &[u32; 3]| [0, 1, 2].map(|k| ([face[k]; 2], 1 << k));
+    let edges = |face: &[u32; 3]| {
+        [0, 1, 2].map(|k| {
+            let (a, b) = (face[k], face[(k + 1) % 3]);
+            ([a.min(b), a.max(b)], 8 << k)
+        })
+    };
+    let mut owners = vec![0; faces.len()];
+    let mut taken = HashSet::new();
+    for (is_edge, only_owners) in [(true, false), (false, true), (false, false)] {
+        for number in [3, 2, 1] {
+            for (face, owner) in faces.iter().zip(&mut owners) {
+                let mut free: Vec<([u32; 2], u32)> = Vec::new();
+                for (name, bit) in if is_edge { edges(face) } else { vertices(face) } {
+                    let is_edge_of_a_point = is_edge && name[0] == name[1];
+                    let is_new = !free.iter().any(|other| other.0 == name);
+                    if !is_edge_of_a_point && is_new && !taken.contains(&(is_edge, name)) {
+                        free.push((name, bit));
+                    }
+                }
+                if free.len() == number && (*owner != 0 || !only_owners) {
+                    for (name, bit) in free {
+                        taken.insert((is_edge, name));
+                        *owner |= bit;
+                    }
+                }
+            }
+        }
+    }
+    owners
 }
