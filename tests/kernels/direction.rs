@@ -177,6 +177,49 @@ fn features_that_meet_beyond_a_common_corner_are_not_parted() {
     assert!(around > PAIRS / 1000);
 }
 
+/// Positions of f32 in doubles have the same result, also if their sizes differ by more than the digits of a double.
+#[test]
+fn doubles_that_are_singles_change_nothing() {
+    let (mut rng, mut found) = (SmallRng::seed_from_u64(8), 0);
+    for i in 0..PAIRS {
+        let mut at = || {
+            let size = if i % 2 == 0 { 0 } else { rng.random_range(-40..=20) };
+            Vec3([0; 3].map(|_| rng.random_range(-1.0f32..=1.0) * (size as f32).exp2()))
+        };
+        let mut path = || Moving { t0: at(), t1: at() };
+        let (p, q): (Corners<f32>, Corners<f32>) = ([0; 3].map(|_| path()), [0; 3].map(|_| path()));
+        let wide = |t: Corners<f32>| t.map(|x| Moving { t0: x.t0.wide(), t1: x.t1.wide() });
+        for has_common in [false, true] {
+            let is_parted = parted(&p, &q, 0.0, has_common);
+            assert_eq!(is_parted, parted(&wide(p), &wide(q), 0.0, has_common), "{p:?} {q:?}");
+            found += is_parted as usize;
+        }
+    }
+    println!("{found} of {} are parted", 2 * PAIRS);
+    assert!(found > PAIRS / 100);
+}
+
+/// Two normals that are equally near to the difference of the centroids: no order is preferred.
+#[test]
+fn order_changes_nothing_for_equal_triangles() {
+    let (mut rng, mut found) = (SmallRng::seed_from_u64(9), 0);
+    for i in 0..PAIRS {
+        let mut path = || [any(&mut rng, 50), any(&mut rng, 50)];
+        let (p, by) = ([0; 3].map(|_| path()), path());
+        // A copy, shifted alike at both ends, or turned over.
+        let mut q = p.map(|x| x.map(|x| plus(x, by[0])));
+        if i % 2 == 1 {
+            q.swap(1, 2);
+        }
+        let (p, q) = (corners::<f32>(p, [0; 3]), corners::<f32>(q, [0; 3]));
+        let is_parted = parted(&p, &q, 0.0, false);
+        assert_eq!(is_parted, parted(&q, &p, 0.0, false), "{p:?} {q:?}");
+        found += is_parted as usize;
+    }
+    println!("{found} of {PAIRS} are parted");
+    assert!(found > PAIRS / 100);
+}
+
 /// The triangles may come in either order, and anywhere.
 #[test]
 fn order_and_place_change_nothing() {

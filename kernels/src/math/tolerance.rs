@@ -207,11 +207,11 @@ impl Tolerance for f64 {
 /// finite, 3 (2^61)^2 < 2^124. Length.
 pub const SINGLE_MOST: f64 = f64::from_bits((1023 + 60) << 52);
 
-/// Error of the difference of two heights of corners in a direction: `5u` of f32, relative to the
-/// sum of `|n_k| |x_k|` over both. Four roundings each (difference, product, two sums); the fifth
-/// is room for the roundings of the bound itself, a dozen `u` of it. Derived in `prim::direction`.
-/// Ratio.
-pub const DIRECTION: f32 = 5.0 * U32;
+/// Error of the difference of two heights of corners in a direction: `7u` of f32, relative to the
+/// sum of the direction's components times that of all differences. Four roundings of each height
+/// (difference, product, two sums) and two of their difference; the seventh is room for the
+/// roundings of the bound itself, 40 `u` of it. Derived in `prim::direction`. Ratio.
+pub const DIRECTION: f32 = 7.0 * U32;
 
 /// Largest extent, and one over the smallest, that a continuous test takes without scaling. Beyond
 /// them differences are first scaled by a power of two, exactly. `2^20`, so that cubes stay clear

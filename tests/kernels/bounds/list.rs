@@ -27,7 +27,7 @@ const OTHERS: [(&str, &str); 28] = [
     ("INCLUSION_DEEP", "a cost"),
     ("MOVING_LIMIT", "a range"),
     ("BOX_LIMIT", "a range"),
-    ("DIRECTION", "twelve corners count where two err: tests/kernels/direction.rs needs it"),
+    ("DIRECTION", "ten differences count where three err: tests/kernels/direction.rs needs it"),
     ("COVARIANCE_ZERO", "a cost: any axes are valid"),
     ("SINGLE_MOST", "a range: within it f32 overflows nowhere"),
     (
