@@ -310,12 +310,12 @@ kernels! {
     narrow_start_wide_f32: certain::wide::<Start, B>, [DiscreteArgs<f32>], NARROW, certain::SHARED;
     narrow_start_exact_f32: certain::exact::<f32, Start, B>, [DiscreteArgs<f32>], NARROW, certain::SHARED;
     narrow_start_exact_f64: certain::exact::<f64, Start, B>, [DiscreteArgs<f64>], NARROW, certain::SHARED;
-    narrow_features_f32: features::features::<f32, Moves, false, B>, [FeaturesArgs<f32>], NARROW, features::shared_bytes(NARROW), registers = 80;
-    narrow_features_before_f32: features::features::<f32, Moves, true, B>, [FeaturesArgs<f32>], NARROW, features::shared_bytes(NARROW), registers = 80;
-    narrow_features_f64: features::features::<f64, Moves, false, B>, [FeaturesArgs<f64>], NARROW, features::shared_bytes(NARROW);
-    narrow_features_before_f64: features::features::<f64, Moves, true, B>, [FeaturesArgs<f64>], NARROW, features::shared_bytes(NARROW);
-    narrow_features_at_rest_f32: features::features::<f32, Rests, false, B>, [FeaturesArgs<f32>], NARROW, features::shared_bytes(NARROW);
-    narrow_features_at_rest_f64: features::features::<f64, Rests, false, B>, [FeaturesArgs<f64>], NARROW, features::shared_bytes(NARROW);
+    narrow_features_f32: features::features::<f32, Moves, false, B>, [FeaturesArgs<f32>], features::LANES, features::shared_bytes(features::LANES), registers = 88;
+    narrow_features_before_f32: features::features::<f32, Moves, true, B>, [FeaturesArgs<f32>], features::LANES, features::shared_bytes(features::LANES), registers = 88;
+    narrow_features_f64: features::features::<f64, Moves, false, B>, [FeaturesArgs<f64>], features::LANES, features::shared_bytes(features::LANES);
+    narrow_features_before_f64: features::features::<f64, Moves, true, B>, [FeaturesArgs<f64>], features::LANES, features::shared_bytes(features::LANES);
+    narrow_features_at_rest_f32: features::features::<f32, Rests, false, B>, [FeaturesArgs<f32>], features::LANES, features::shared_bytes(features::LANES), registers = 72;
+    narrow_features_at_rest_f64: features::features::<f64, Rests, false, B>, [FeaturesArgs<f64>], features::LANES, features::shared_bytes(features::LANES);
     narrow_cull_f32: cull::cull::<f32, B>, [CullArgs<f32>], RUNG, 0;
     narrow_cull_f64: cull::cull::<f64, B>, [CullArgs<f64>], RUNG, 0;
     narrow_vf_f32_f32: solve::vf::<f32, f32, B>, [SolveArgs<f32>], WIDE, 0;

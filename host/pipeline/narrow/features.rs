@@ -99,6 +99,6 @@ impl Features {
             gap,
             known,
         };
-        launch::striding::<E>(given.device, given.pairs.room() as usize, &args)
+        launch::at_once::<E>(given.device, given.pairs.room() as usize, &args)
     }
 }

@@ -56,6 +56,12 @@ impl<B: Block> Waiting<B> {
         (self.fill, some)
     }
 
+    /// Whether none waits.
+    #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        self.fill == 0
+    }
+
     /// The pair at a place.
     #[inline(always)]
     pub fn get(&self, lane: &B::Lane, place: u32) -> Pair {

@@ -1,6 +1,6 @@
 //! # Features: triangle pairs → vertex/face and edge/edge candidates
 //! Paper    the thesis, section 6.2.5: "each of the 15 elementary vertex/face and edge/edge tests".
-//! Launch   a lane a triangle pair; a grid of any size strides.
+//! Launch   a warp a block, as many blocks as are resident; they stride over runs of the list.
 //!          [`Moves`](crate::bvh::course::Moves) over a step, [`Rests`](crate::bvh::course::Rests) at
 //!          rest; each is a kernel of its own.
 //! Reads    candidates (pairs that share a vertex among them), facets, positions of both frames, or
@@ -17,25 +17,26 @@
 //!          them, overlap.
 //!          Outside of it no feature of one can meet one of the other.
 //!          A direction that parts two triangles throughout the step parts their features: such
-//!          pairs are left out first ([`crate::prim::direction`]).
+//!          pairs are left out ([`crate::prim::direction`]).
 //!          With a known earliest time most pairs are left out whose boxes first come within the gap
 //!          behind the horizon.
 //!          A pair that never comes within the gap may be listed or not, as its owners are parted.
 //! Room     vf, ee: counted past the end, grown, run again.
-//! Departs  the paper runs all 15 tests for every pair. Owners leave about 3, shorter sweeps 1.
+//! Departs  the paper runs all 15 tests for every pair. Of the pairs of cloth in motion half own a
+//!          test, five each on average; directions leave 0.44 of those.
 //!          Owners are the representative triangles of Curtis, Tamstorf, Manocha, "Fast collision
 //!          detection for deformable models using representative-triangles", 2008.
-//! Cost     8 B pair, 64 B facets, 192 B positions (gathered; at rest 96 B).
-//!          Directions take some 420 operations, for pairs that own a test. Those that they leave
-//!          wait on chip until there is one a lane. The 15 tests take some 500 (at rest 300).
-//!          No branches; on a CPU in vectors.
+//! Cost     8 B pair, 64 B facets. For pairs that own a test again 64 B and 192 B positions (gathered;
+//!          at rest 96 B), and a direction of some 280 operations. For those that it leaves the same
+//!          again, and the 15 tests of some 500 (at rest 300).
+//!          Each step waits on chip until it has a pair a lane. No branches; on a CPU in vectors.
 //!          Output is numbered in shared memory first, so that all lanes write.
 
 use super::expect;
 use crate::abi::{Facet, FeaturesArgs, Pair};
 use crate::bvh::course::{Course, Gap};
 use crate::bvh::horizon::Horizon;
-use crate::exec::{Block, Lane, RowMap, Shared, Slot};
+use crate::exec::{Block, Lane, RowMap, Shared, Slot, WARP};
 use crate::math::{Real, pick};
 use crate::prim::direction::parted;
 use crate::prim::sweep::MOST;
@@ -71,18 +72,26 @@ fn owned(p: &Facet, q: &Facet) -> u32 {
 }
 
 /// The tests whose features' boxes come within a gap, and not first behind the horizon.
-struct Meeting<R, C> {
+struct Meeting<R, C, const HORIZON: bool> {
     gap: Gap<R>,
     horizon: f32,
     course: PhantomData<C>,
 }
 
-impl<R: Real, C: Course<R>> RowMap for Meeting<R, C> {
+impl<R, C, const HORIZON: bool> Meeting<R, C, HORIZON> {
+    /// The end of the step if no time is known: then the compiler knows it, too.
+    #[inline(always)]
+    fn horizon(&self) -> f32 {
+        if HORIZON { self.horizon } else { 1.0 }
+    }
+}
+
+impl<R: Real, C: Course<R>, const HORIZON: bool> RowMap for Meeting<R, C, HORIZON> {
     type Number = R;
     type Row = [[C::Corner; 3]; 2];
     #[inline(always)]
     fn at_once(&self, [p, q]: Self::Row) -> u32 {
-        C::meeting(&p, &q, self.gap, self.horizon)
+        C::meeting(&p, &q, self.gap, self.horizon())
     }
     // Which boxes meet depends on roundings, and what a solver without a proof finds on that. So
     // numbers of f32 are computed as in a scene of f32, whatever else is in the scene.
@@ -94,7 +103,7 @@ impl<R: Real, C: Course<R>> RowMap for Meeting<R, C> {
     }
     #[inline(always)]
     fn single_at_once(&self, [p, q]: Self::Row) -> u32 {
-        C::meeting_single(&p, &q, self.gap.single, self.horizon)
+        C::meeting_single(&p, &q, self.gap.single, self.horizon())
     }
 }
 
@@ -120,19 +129,6 @@ impl<R: Real, C: Course<R>> RowMap for Parted<R, C> {
         let (p, q) = ([C::ends(a), C::ends(b), C::ends(c)], [C::ends(d), C::ends(e), C::ends(f)]);
         if parted(&p, &q, self.gap, C::ends(common).t0[0] > R::ZERO) { APART } else { LEFT }
     }
-    const HAS_SINGLES: bool = R::WIDE;
-    #[inline(always)]
-    fn is_single(&self, [a, b, c, d, e, f, _]: &Self::Row) -> bool {
-        let both = C::is_single(a) && C::is_single(d);
-        both && C::is_single(b) && C::is_single(e) && C::is_single(c) && C::is_single(f)
-    }
-    #[inline(always)]
-    fn single_at_once(&self, row: Self::Row) -> u32 {
-        let [a, b, c, d, e, f, common] = row;
-        let of = |corner: C::Corner| C::ends(corner).narrow();
-        let (p, q) = ([of(a), of(b), of(c)], [of(d), of(e), of(f)]);
-        if parted(&p, &q, self.gap, of(common).t0[0] > 0.0) { APART } else { LEFT }
-    }
 }
 
 /// The corners of two triangles, and whether the first ones are one vertex; `None` if more are.
@@ -150,13 +146,16 @@ fn turned(p: &Facet, q: &Facet) -> Option<([u32; 3], [u32; 3], bool)> {
     Some((turn(p.corners, of_p), turn(q.corners, of_q), bits != 0))
 }
 
+/// Lanes of a block: one warp, whose barriers and numbering cost next to nothing.
+pub const LANES: u32 = WARP;
+
 /// Numbers of tests of a lane, with one to spare.
 const TESTS: u32 = 16;
 
 /// Bytes of shared memory of a block: pairs that wait, and a number of each test that is to be
 /// listed.
 pub const fn shared_bytes(lanes: u32) -> u32 {
-    waiting_bytes(lanes) + 4 * MOST * lanes
+    2 * waiting_bytes(lanes) + 4 * MOST * lanes
 }
 
 /// Bits of [`owned`] that are vertices and faces.
@@ -202,102 +201,108 @@ impl Two {
     }
 }
 
-/// Vertex/face and edge/edge candidates of each triangle pair. Two filters one after the other, in
-/// the order that leaves less for the second one. With a horizon most pairs have no boxes that meet
-/// before it: directions come second.
+/// Vertex/face and edge/edge candidates of each triangle pair. Pairs that own no test are left out
+/// first, then those that a direction parts: pairs wait on chip, so that each step has full warps.
+///
+/// Each step has one place in the code, or the compiler puts it out of line: so the last turns have
+/// no new pairs.
 #[inline(always)]
 pub fn features<R: Real, C: Course<R>, const HORIZON: bool, B: Block>(block: &mut B, args: &FeaturesArgs<R>) {
-    let (count, lanes) = (args.pairs.listed(block), block.lanes());
-    let later = block.blocks() * lanes;
-    let mut waiting = Waiting::new(block);
-    let mut tests = Tests::<R, C, B>::new(block, args);
-    let mut base = block.block() * lanes;
-    // One place in the code for what is behind it, or the compiler puts it out of line: so the last
-    // turn has no pairs.
+    let count = args.pairs.listed(block);
+    let (mut owners, mut left) = (Waiting::new(block), Waiting::new(block));
+    let (gap, horizon) = (Gap::of(args.gap), Horizon::of(block, args.known).time());
+    let directions = Parted::<R, C> { gap: gap.single, course: PhantomData };
+    let mut tests = Tests::<R, C, B, HORIZON>::new(block, Meeting { gap, horizon, course: PhantomData });
+    let mut turn = 0;
     loop {
-        let find = |lane: &B::Lane| {
-            let i = base + lane.lane();
-            if i >= count {
-                return None;
-            }
-            let two = Two::of(lane, args, args.pairs.get(lane, i));
-            expect(lane, &args.pairs, i + later, count, |pair| {
-                lane.expect(args.facets, pair.a);
-                lane.expect(args.facets, pair.b);
-            });
-            if owned(&two.p, &two.q) == 0 {
-                return None;
-            }
-            [two.p, two.q]
-                .iter()
-                .flat_map(|facet| facet.corners)
-                .for_each(|vertex| C::expect(lane, &args.frames, vertex));
-            Some(two)
-        };
-        if HORIZON {
+        let (base, later) = (stretch(block, turn), stretch(block, turn + 1));
+        let is_end = base >= count as u64;
+        block.phase(|lane| {
+            let [i, later] = [base, later].map(|from| from + lane.lane() as u64);
+            let is_there = i < count as u64;
+            owners.set(lane, if is_there { owner(lane, args, i as u32, later, count) } else { None });
+        });
+        owners.add(block);
+        let (from, some) = owners.take(block, is_end);
+        if some > 0 {
             block.map_rows(
-                &tests.boxes,
-                find,
-                |lane, two| Some(two.meeting::<R, C, _>(lane, args)),
-                |lane, result| {
-                    let left = result
-                        .and_then(|(two, mask)| (owned(&two.p, &two.q) & mask != 0).then_some(two.pair));
-                    waiting.set(lane, left);
+                &directions,
+                |lane| {
+                    let is_mine = lane.lane() < some;
+                    let two = is_mine.then(|| Two::of(lane, args, owners.get(lane, from + lane.lane())))?;
+                    [two.p, two.q]
+                        .iter()
+                        .flat_map(|facet| facet.corners)
+                        .for_each(|vertex| C::expect(lane, &args.frames, vertex));
+                    Some(two)
                 },
-            );
-        } else {
-            block.map_rows(
-                &tests.directions,
-                find,
                 |lane, two| two.parted::<R, C, _>(lane, args),
                 |lane, result| {
-                    let left = result.and_then(|(two, verdict)| (verdict != APART).then_some(two.pair));
-                    waiting.set(lane, left);
+                    let is_left = result.and_then(|(two, verdict)| (verdict != APART).then_some(two.pair));
+                    left.set(lane, is_left);
                 },
             );
+            left.add(block);
         }
-        waiting.add(block);
-        let is_end = base >= count;
-        let (from, some) = waiting.take(block, is_end);
+        let (from, some) = left.take(block, is_end);
         if some > 0 {
-            tests.run::<HORIZON>(block, args, &waiting, from, some);
+            tests.run(block, args, &left, from, some);
         }
-        if is_end {
+        if is_end & left.is_empty() {
             break;
         }
-        base += later;
+        turn += 1;
     }
 }
 
+/// Stretches of neighbours that a block takes in sequence: pairs of neighbours share triangles. Few,
+/// since some parts of the list have more work than others.
+const RUN: u32 = 4;
+
+/// The first pair of a block's stretch.
+#[inline(always)]
+fn stretch<B: Block>(block: &B, turn: u32) -> u64 {
+    let run = (turn / RUN) as u64 * block.blocks() as u64 + block.block() as u64;
+    (run * RUN as u64 + (turn % RUN) as u64) * block.lanes() as u64
+}
+
+/// Pair `i`, if it owns a test; `later` is the place of the lane's next one.
+#[inline(always)]
+fn owner<R: Real, L: Lane>(
+    lane: &L,
+    args: &FeaturesArgs<R>,
+    i: u32,
+    later: u64,
+    count: u32,
+) -> Option<Pair> {
+    let two = Two::of(lane, args, args.pairs.get(lane, i));
+    let later = later.min(count as u64) as u32;
+    expect(lane, &args.pairs, later, count, |pair| {
+        lane.expect(args.facets, pair.a);
+        lane.expect(args.facets, pair.b);
+    });
+    (owned(&two.p, &two.q) != 0).then_some(two.pair)
+}
+
 /// The 15 tests of the pairs that wait.
-struct Tests<R, C, B: Block> {
-    directions: Parted<R, C>,
-    boxes: Meeting<R, C>,
+struct Tests<R, C, B: Block, const HORIZON: bool> {
+    boxes: Meeting<R, C, HORIZON>,
     /// Which lane's test each candidate is.
     listed: Shared<u32>,
-    are_apart: B::Slot<bool>,
     masks: B::Slot<u32>,
     places: B::Slot<u32>,
 }
 
-impl<R: Real, C: Course<R>, B: Block> Tests<R, C, B> {
+impl<R: Real, C: Course<R>, B: Block, const HORIZON: bool> Tests<R, C, B, HORIZON> {
     #[inline(always)]
-    fn new(block: &mut B, args: &FeaturesArgs<R>) -> Self {
-        let (gap, horizon) = (Gap::of(args.gap), Horizon::of(block, args.known).time());
-        let lanes = block.lanes();
-        Tests {
-            directions: Parted { gap: gap.single, course: PhantomData },
-            boxes: Meeting { gap, horizon, course: PhantomData },
-            listed: block.shared::<u32>(MOST * lanes),
-            are_apart: block.slot(false),
-            masks: block.slot(0),
-            places: block.slot(0),
-        }
+    fn new(block: &mut B, boxes: Meeting<R, C, HORIZON>) -> Self {
+        let listed = block.shared::<u32>(MOST * block.lanes());
+        Tests { boxes, listed, masks: block.slot(0), places: block.slot(0) }
     }
 
     /// Lists the candidates of `some` of the pairs that wait, from the one at `from`; one a lane.
     #[inline(always)]
-    fn run<const HORIZON: bool>(
+    fn run(
         &mut self,
         block: &mut B,
         args: &FeaturesArgs<R>,
@@ -307,26 +312,12 @@ impl<R: Real, C: Course<R>, B: Block> Tests<R, C, B> {
     ) {
         let (lanes, listed) = (block.lanes(), self.listed);
         let pair_of = |lane: &B::Lane, i: u32| waiting.get(lane, from + i);
-        let find =
-            |lane: &B::Lane| (lane.lane() < some).then(|| Two::of(lane, args, pair_of(lane, lane.lane())));
-        if HORIZON {
-            block.map_rows(
-                &self.directions,
-                find,
-                |lane, two| two.parted::<R, C, _>(lane, args),
-                |lane, result| {
-                    *self.are_apart.of(lane) = result.is_some_and(|(_, verdict)| verdict == APART);
-                    lane.meet();
-                },
-            );
-        }
         block.map_rows(
             &self.boxes,
-            find,
+            |lane| (lane.lane() < some).then(|| Two::of(lane, args, pair_of(lane, lane.lane()))),
             |lane, two| Some(two.meeting::<R, C, _>(lane, args)),
             |lane, result| {
                 let mask = result.map_or(0, |(two, meeting)| owned(&two.p, &two.q) & meeting);
-                let mask = if HORIZON && *self.are_apart.of(lane) { 0 } else { mask };
                 *self.masks.of(lane) = mask;
                 *self.places.of(lane) = (mask & VERTICES).count_ones() + EE * (mask & !VERTICES).count_ones();
                 lane.meet();
