@@ -26,9 +26,9 @@
 //!          test, five each on average; directions leave 0.44 of those.
 //!          Owners are the representative triangles of Curtis, Tamstorf, Manocha, "Fast collision
 //!          detection for deformable models using representative-triangles", 2008.
-//! Cost     8 B pair, 64 B facets. For pairs that own a test again 64 B and 192 B positions (gathered;
-//!          at rest 96 B), and a direction of some 280 operations. For those that it leaves the same
-//!          again, and the 15 tests of some 500 (at rest 300).
+//! Cost     8 B pair, 64 B facets. For pairs that own a test again 64 B and 192 B positions
+//!          (gathered; at rest 96 B), and directions of some 280 operations. For those that these
+//!          leave the same bytes again, and the 15 tests of some 500 (at rest 300).
 //!          Each step waits on chip until it has a pair a lane. No branches; on a CPU in vectors.
 //!          Output is numbered in shared memory first, so that all lanes write.
 
@@ -268,13 +268,7 @@ fn stretch<B: Block>(block: &B, turn: u32) -> u64 {
 
 /// Pair `i`, if it owns a test; `later` is the place of the lane's next one.
 #[inline(always)]
-fn owner<R: Real, L: Lane>(
-    lane: &L,
-    args: &FeaturesArgs<R>,
-    i: u32,
-    later: u64,
-    count: u32,
-) -> Option<Pair> {
+fn owner<R: Real, L: Lane>(lane: &L, args: &FeaturesArgs<R>, i: u32, later: u64, count: u32) -> Option<Pair> {
     let two = Two::of(lane, args, args.pairs.get(lane, i));
     let later = later.min(count as u64) as u32;
     expect(lane, &args.pairs, later, count, |pair| {
@@ -302,14 +296,7 @@ impl<R: Real, C: Course<R>, B: Block, const HORIZON: bool> Tests<R, C, B, HORIZO
 
     /// Lists the candidates of `some` of the pairs that wait, from the one at `from`; one a lane.
     #[inline(always)]
-    fn run(
-        &mut self,
-        block: &mut B,
-        args: &FeaturesArgs<R>,
-        waiting: &Waiting<B>,
-        from: u32,
-        some: u32,
-    ) {
+    fn run(&mut self, block: &mut B, args: &FeaturesArgs<R>, waiting: &Waiting<B>, from: u32, some: u32) {
         let (lanes, listed) = (block.lanes(), self.listed);
         let pair_of = |lane: &B::Lane, i: u32| waiting.get(lane, from + i);
         block.map_rows(
