@@ -70,8 +70,6 @@ pub trait Precision: Real + Send {
     type Settle: Entry<Args = RungArgs<Self>>;
     /// Solves the remaining pairs in slices.
     type Slice: Entry<Args = RungArgs<Self>>;
-    /// The first step of separation, in f32.
-    type SeparateFirst: Entry<Args = RungArgs<Self>>;
     /// Separation, in f32.
     type Separate32: Entry<Args = RungArgs<Self>>;
     /// Separation, in f64.
@@ -115,7 +113,6 @@ impl Precision for f32 {
     type Isolate64 = entry::narrow_isolate_f32_f64;
     type Settle = entry::narrow_settle_f32;
     type Slice = entry::narrow_slice_f32;
-    type SeparateFirst = entry::narrow_separate_first_f32;
     type Separate32 = entry::narrow_separate_f32_f32;
     type Separate64 = entry::narrow_separate_f32_f64;
 
@@ -163,7 +160,6 @@ impl Precision for f64 {
     type Isolate64 = entry::narrow_isolate_f64_f64;
     type Settle = entry::narrow_settle_f64;
     type Slice = entry::narrow_slice_f64;
-    type SeparateFirst = entry::narrow_separate_first_f64;
     type Separate32 = entry::narrow_separate_f64_f32;
     type Separate64 = entry::narrow_separate_f64_f64;
 

@@ -10,14 +10,13 @@ use crate::bvh::course::{Moves, Rests};
 use crate::exec::Block;
 use crate::math::Real;
 use crate::prim::isolate::ladder::SLICES;
-use crate::prim::isolate::separation::{Double, Single};
 use crate::queue::worker;
 use crate::sort;
 use crate::stage::construct::{cuts, graft, morton, tile_filters, tree, treelet};
 use crate::stage::fit::{leaves as fit_of_leaves, rims, tiles as fit_of_tiles};
 use crate::stage::narrow::discrete::{Start, Still};
 use crate::stage::narrow::{
-    below_precision, certain, climb, cull, discrete, features, near, nearest, separate, slice, solve,
+    abreast, below_precision, certain, climb, cull, discrete, features, near, nearest, separate, slice, solve,
 };
 use crate::stage::refit::{levels, tiles as refit_of_tiles, treelets};
 use crate::stage::traverse::{
@@ -336,12 +335,10 @@ kernels! {
     narrow_settle_f64: climb::settle::<f64, B>, [RungArgs<f64>], NARROW, 0;
     narrow_slice_f32: slice::slice::<f32, B>, [RungArgs<f32>], SLICES, slice::SHARED;
     narrow_slice_f64: slice::slice::<f64, B>, [RungArgs<f64>], SLICES, slice::SHARED;
-    narrow_separate_first_f32: climb::separate_at_once::<f32, B>, [RungArgs<f32>], RUNG, 0, registers = 64;
-    narrow_separate_first_f64: climb::separate_at_once::<f64, B>, [RungArgs<f64>], RUNG, 0;
-    narrow_separate_f32_f32: separate::separate::<f32, Single<3>, Single<4>, B>, [RungArgs<f32>], RUNG, separate::SHARED, registers = 128;
-    narrow_separate_f32_f64: separate::separate::<f32, Double<3>, Double<4>, B>, [RungArgs<f32>], RUNG, separate::SHARED;
-    narrow_separate_f64_f32: separate::separate::<f64, Single<3>, Single<4>, B>, [RungArgs<f64>], RUNG, separate::SHARED;
-    narrow_separate_f64_f64: separate::separate::<f64, Double<3>, Double<4>, B>, [RungArgs<f64>], RUNG, separate::SHARED;
+    narrow_separate_f32_f32: abreast::abreast::<f32, B>, [RungArgs<f32>], RUNG, abreast::shared_bytes(RUNG), registers = 128;
+    narrow_separate_f32_f64: separate::separate::<f32, B>, [RungArgs<f32>], RUNG, separate::shared_bytes(RUNG);
+    narrow_separate_f64_f32: abreast::abreast::<f64, B>, [RungArgs<f64>], RUNG, abreast::shared_bytes(RUNG);
+    narrow_separate_f64_f64: separate::separate::<f64, B>, [RungArgs<f64>], RUNG, separate::shared_bytes(RUNG);
     narrow_near_f32: near::near::<f32, B>, [NearArgs<f32>], RUNG, 0, registers = 64;
     narrow_near_f64: near::near::<f64, B>, [NearArgs<f64>], RUNG, 0;
     narrow_least_f32: nearest::least::<f32, B>, [LeastArgs<f32>], RUNG, 0;

@@ -4,6 +4,7 @@
 mod begin;
 mod built;
 mod known;
+mod nearest;
 mod planted;
 mod rung;
 mod turning;

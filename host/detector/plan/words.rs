@@ -17,7 +17,7 @@ pub const STAGES: [(&str, &str); 9] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 62] = [
+const KERNELS: [(&str, &str); 61] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
     ("place", "poses applied, uploads put in place, other bodies at rest"),
     ("construct_bounds", "the box of each body's centres"),
@@ -67,7 +67,6 @@ const KERNELS: [(&str, &str); 62] = [
     ("narrow_isolate", "roots isolated, each with a certificate"),
     ("narrow_settle", "exact touching at the start"),
     ("narrow_slice", "the step in slices, and the search by boxes"),
-    ("narrow_separate_first", "fixed supporting planes"),
     ("narrow_separate", "supporting planes"),
     ("narrow_least", "the least distance of triangles"),
     ("narrow_witness", "the first pair with the least distance"),

@@ -23,8 +23,6 @@ enum Rung {
     Settle,
     /// The time window in slices.
     Slice,
-    /// The first step of separation, in f32.
-    SeparateFirst,
     /// Separation, in f32.
     Separate32,
     /// Separation, in f64.
@@ -35,9 +33,7 @@ enum Rung {
 fn rungs(certified: &Certified) -> &'static [Rung] {
     match (certified.precision, certified.is_apart()) {
         (CertifiedPrecision::F64, true) => &[Rung::Separate64],
-        (CertifiedPrecision::Mixed | CertifiedPrecision::F32, true) => {
-            &[Rung::SeparateFirst, Rung::Separate32, Rung::Separate64]
-        }
+        (CertifiedPrecision::Mixed | CertifiedPrecision::F32, true) => &[Rung::Separate32, Rung::Separate64],
         (CertifiedPrecision::F32, false) => &[Rung::Isolate32, Rung::Settle],
         (CertifiedPrecision::F64, false) => &[Rung::Isolate64, Rung::Settle, Rung::Slice],
         (CertifiedPrecision::Mixed, false) => &[Rung::Isolate32, Rung::Isolate64, Rung::Settle, Rung::Slice],
@@ -66,7 +62,7 @@ impl Rung {
     fn left(self) -> usize {
         match self {
             Rung::Isolate32 | Rung::Separate32 => 0,
-            Rung::Isolate64 | Rung::SeparateFirst => 1,
+            Rung::Isolate64 => 1,
             Rung::Settle | Rung::Slice | Rung::Separate64 => 2,
         }
     }
@@ -202,7 +198,6 @@ fn start<R: Precision>(
         Rung::Slice => {
             launch::at_once::<R::Slice>(device, capacity.saturating_mul(R::Slice::LANES as usize), args)
         }
-        Rung::SeparateFirst => launch::striding::<R::SeparateFirst>(device, capacity, args),
         Rung::Separate32 => launch::at_once::<R::Separate32>(device, capacity, args),
         Rung::Separate64 => launch::at_once::<R::Separate64>(device, capacity, args),
     }

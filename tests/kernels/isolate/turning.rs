@@ -22,7 +22,8 @@ struct Outcome {
 type Plane<S, const N: usize> = fn(&Pair<S, N>, (S, S), S) -> bool;
 
 fn turned<S: Grid, const N: usize>(pair: &Pair<S, N>, (from, to): (S, S), over: S) -> bool {
-    pair.stays_farther(&pair.facing(from), &pair.facing(to), over)
+    let hull = pair.hull();
+    hull.stays_farther(&hull.facing(from), &hull.facing(to), over)
 }
 
 fn along<S: Grid, const N: usize>(pair: &Pair<S, N>, part: (S, S), over: S) -> bool {

@@ -7,9 +7,9 @@
 //! plane reaches farther ([`super::turning`], [`super::normal`]). This is conservative advancement
 //! (Mirtich 1996), with the plane's own motion instead of a bound of speeds.
 
-use super::nearest::nearest;
-use super::pair::{Pair, sum};
-use super::turning::Facing;
+use super::hull::{Facing, Hull};
+use super::normal::Normal;
+use super::pair::Pair;
 use crate::math::Vec3;
 use crate::prim::inclusion::Grid;
 
@@ -63,20 +63,200 @@ pub enum Advanced<S> {
     },
 }
 
-/// An advancement in progress, one step after the other. So a GPU's lanes can take new pairs when
-/// they finish theirs.
+/// Limits of an advancement.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits<S> {
+    /// How far apart.
+    pub distance: Distance<S>,
+    /// The time of the end.
+    pub end: S,
+    /// How many steps.
+    pub most: u32,
+}
+
+/// How far an advancement is, between two looks.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress<S> {
+    /// Until then the features are certainly farther apart.
+    pub at: S,
+    /// For how long a turning plane is tried next; or how far ahead the next look is.
+    pub stride: S,
+    /// Steps that were taken.
+    pub steps: u32,
+    /// [`STEP`] or [`TURN`]; from [`LOOK`] on, looks ahead.
+    pub next: u32,
+}
+
+/// Next is a step, which begins with a fixed plane.
+const STEP: u32 = 0;
+/// Next is the turning plane of a step whose fixed plane was tried.
+const TURN: u32 = 1;
+/// Next is the first look ahead, or a later one.
+const LOOK: u32 = 2;
+/// Within a step only: whether the features are near at its end.
+const LATER: u32 = u32::MAX;
+
+impl<S: Grid> Progress<S> {
+    /// At the begin of `[begin, end]`.
+    #[inline(always)]
+    pub fn new(begin: S, end: S) -> Self {
+        Progress { at: begin, stride: end - begin, steps: 0, next: STEP }
+    }
+
+    /// A step, or a part of it; the result, once it is final. In f32 it ends with the second hull
+    /// that it computes, and goes on from there the next time: of many pairs in step none waits for
+    /// one that takes long. In f64, in which few pairs advance, a step is whole. About 400
+    /// operations.
+    #[inline(always)]
+    pub fn go_on<const N: usize>(
+        &mut self,
+        hull: &Hull<S, N>,
+        limits: &Limits<S>,
+        normal: impl Fn() -> Normal<S>,
+    ) -> Option<Advanced<S>> {
+        match self.fixed(hull, limits) {
+            Ok(told) => Some(told),
+            Err(ahead) => self.ahead(hull, limits, ahead, normal),
+        }
+    }
+
+    /// The first part of it, a fixed plane: the result, if it is final. It may prove the distance
+    /// until the end, or the hull may be within it.
+    ///
+    /// # Errors
+    /// What the second part continues with.
+    #[inline(always)]
+    pub fn fixed<const N: usize>(
+        &mut self,
+        hull: &Hull<S, N>,
+        limits: &Limits<S>,
+    ) -> Result<Advanced<S>, Ahead<S, N>> {
+        let (&Limits { distance: d, end, most }, t, kind) = (limits, self.at, self.next);
+        if kind >= LOOK {
+            let nowhere = Vec3([S::ZERO; 3]);
+            let now = Facing { x: [nowhere; N], p: nowhere };
+            return Err(Ahead { now, next: t, kind, is_near: true });
+        }
+        if kind == STEP {
+            if self.steps >= most {
+                return Ok(Advanced::Open { from: t });
+            }
+            self.steps += 1;
+        }
+        let now = hull.facing(t);
+        let length = hull.at_most(now.p);
+        if length <= d.under {
+            return Ok(Advanced::Within { from: t, to: t });
+        }
+        // If the plane is reached to a rounding there is no next time. The result may still be
+        // certain soon.
+        let next = hull.until(&now, d.over).map_or(t, |next| next.max(t));
+        if next >= end {
+            return Ok(Advanced::Apart);
+        }
+        let is_near = length <= d.under + d.slack;
+        let is_soon = is_near | (next - t < d.time_tolerance * S::of(0.25));
+        if kind == STEP && is_soon {
+            Err(Ahead { now, next, kind: LATER, is_near })
+        } else if next > t {
+            Err(Ahead { now, next, kind: TURN, is_near })
+        } else {
+            Ok(Advanced::Open { from: t })
+        }
+    }
+
+    /// The second part. If the hull is near, a later one may be within the distance.
+    ///
+    /// If fixed planes take many steps, a turning one may take few. The first attempt is four times
+    /// as long as the last success. If that fails and the distance is reached, the next attempt
+    /// ends before it. The line between the distances at both ends estimates the time. Further
+    /// attempts are a quarter as long.
+    ///
+    /// A pair that stays near for long is looked at ahead: whether some later time is certain.
+    #[inline(always)]
+    pub fn ahead<const N: usize>(
+        &mut self,
+        hull: &Hull<S, N>,
+        limits: &Limits<S>,
+        ahead: Ahead<S, N>,
+        normal: impl Fn() -> Normal<S>,
+    ) -> Option<Advanced<S>> {
+        let (&Limits { distance: d, end, .. }, t) = (limits, self.at);
+        let Ahead { now, next, mut kind, is_near } = ahead;
+        let mut tries = 0;
+        loop {
+            // The same for all kinds: lanes of a warp compute their hulls side by side.
+            let from = if kind == TURN { t } else { next };
+            let to = (from + if kind == LATER { d.time_tolerance } else { self.stride }).min(end);
+            let then = hull.facing(to);
+            if kind == TURN {
+                if !(to > next) {
+                    break;
+                }
+                if hull.stays_farther(&now, &then, d.over) || normal().is_farther((t, to), d.over) {
+                    (self.at, self.stride, self.next) = (to, (to - t) * S::of(4.0), STEP);
+                    return if to >= end { Some(Advanced::Apart) } else { None };
+                }
+                let (here, there) = (now.p.dot(now.p).sqrt(), then.p.dot(then.p).sqrt());
+                let is_reached = (tries == 0) & (there < d.over);
+                let part =
+                    if is_reached { S::of(0.9) * (here - d.over) / (here - there) } else { S::of(0.25) };
+                self.stride = (to - t) * part;
+                tries += 1;
+                if tries == if S::WIDE { TURNING[1] } else { TURNING[0] } {
+                    break;
+                }
+                continue;
+            }
+            if kind != LATER && (to >= end || !(to > next)) {
+                return Some(Advanced::Near { from: next });
+            }
+            if hull.at_most(then.p) <= d.under {
+                return Some(Advanced::Within { from: next, to });
+            }
+            if kind != LATER {
+                self.stride = self.stride + self.stride;
+                kind += 1;
+                if kind == LOOK + AHEAD {
+                    return Some(Advanced::Near { from: next });
+                }
+            } else if is_near && (next - t < d.time_tolerance * S::of(0.02) || self.steps > PATIENCE) {
+                (self.at, self.stride) = (next, d.time_tolerance + d.time_tolerance);
+                kind = LOOK;
+            } else if next > t {
+                kind = TURN;
+            } else {
+                return Some(Advanced::Open { from: t });
+            }
+            if !S::WIDE {
+                self.next = kind;
+                return None;
+            }
+        }
+        (self.at, self.stride, self.next) = (next, self.stride.max((next - t) * S::of(4.0)), STEP);
+        None
+    }
+}
+
+/// Between the parts of a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Ahead<S, const N: usize> {
+    /// The hull at the begin of the step.
+    now: Facing<S, N>,
+    /// Until then the fixed plane proves the distance.
+    next: S,
+    /// What is to be done: [`LATER`], or as [`Progress::next`].
+    kind: u32,
+    /// Whether the distance is reached at the begin, but for the slack.
+    is_near: bool,
+}
+
+/// An advancement of a pair.
 #[derive(Clone, Copy, Debug)]
 pub struct Advance<S, const N: usize> {
     pair: Pair<S, N>,
-    distance: Distance<S>,
-    /// Until then the features are certainly farther apart.
-    at: S,
-    end: S,
-    /// For how long a turning plane is tried next.
-    stride: S,
-    /// Steps that were taken.
-    pub steps: u32,
-    most: u32,
+    limits: Limits<S>,
+    progress: Progress<S>,
 }
 
 impl<S: Grid, const N: usize> Advance<S, N> {
@@ -85,170 +265,36 @@ impl<S: Grid, const N: usize> Advance<S, N> {
     #[inline(always)]
     pub fn new(pair: Pair<S, N>, (begin, end): (S, S), distance: Distance<S>, most: u32) -> Self {
         let most = if pair.finite { most } else { 0 };
-        Advance { pair, distance, at: begin, end, stride: end - begin, steps: 0, most }
+        Advance { pair, limits: Limits { distance, end, most }, progress: Progress::new(begin, end) }
     }
 
     /// All steps.
     #[inline(always)]
     pub fn run(&mut self) -> Advanced<S> {
+        let pair = self.pair;
         loop {
-            if let Some(told) = self.step() {
+            if let Some(told) = self.go_on(|| pair.normal()) {
                 return told;
             }
         }
     }
 
-    /// One step; the result, once it is final. About 150 operations, twice that if the distance is
-    /// near, and up to 1,000 more for a plane that turns.
+    /// [`Progress::go_on`], with the pair's normal.
     #[inline(always)]
-    pub fn step(&mut self) -> Option<Advanced<S>> {
-        match self.fixed() {
-            Ok(told) => Some(told),
-            Err((now, next)) => {
-                self.at = self.farther(&now, next);
-                (self.at >= self.end).then_some(Advanced::Apart)
-            }
-        }
+    pub fn go_on(&mut self, normal: impl Fn() -> Normal<S>) -> Option<Advanced<S>> {
+        self.progress.go_on(&self.pair.hull(), &self.limits, normal)
     }
 
-    /// A step by a fixed plane: the result, if it is final.
-    ///
-    /// # Errors
-    /// The hull now, and the time until which the features certainly stay farther apart. The step
-    /// continues from there.
+    /// The pair.
     #[inline(always)]
-    pub fn fixed(&mut self) -> Result<Advanced<S>, (Facing<S, N>, S)> {
-        let (d, t) = (&self.distance, self.at);
-        if self.steps >= self.most {
-            return Ok(Advanced::Open { from: t });
-        }
-        self.steps += 1;
-        let now = self.pair.facing(t);
-        let length = self.pair.at_most(now.p);
-        if length <= d.under {
-            return Ok(Advanced::Within { from: t, to: t });
-        }
-        // If the plane is reached to a rounding there is no next time. The result may still be
-        // certain soon.
-        let next = self.pair.until(&now, d.over).map_or(t, |next| next.max(t));
-        if next >= self.end {
-            return Ok(Advanced::Apart);
-        }
-        let (near, step) = (length <= d.under + d.slack, next - t);
-        if near || step < d.time_tolerance * S::of(0.25) {
-            let later = (next + d.time_tolerance).min(self.end);
-            if self.pair.at_most(nearest(&self.pair.at(later))) <= d.under {
-                return Ok(Advanced::Within { from: next, to: later });
-            }
-            if near && (step < d.time_tolerance * S::of(0.02) || self.steps > PATIENCE) {
-                return Ok(self.look_ahead(next));
-            }
-        }
-        if !(next > t) {
-            return Ok(Advanced::Open { from: t });
-        }
-        Err((now, next))
+    pub fn pair(&self) -> &Pair<S, N> {
+        &self.pair
     }
 
-    /// Whether one turning plane proves that the features stay farther apart until the end.
+    /// Steps that were taken.
     #[inline(always)]
-    pub fn stays_to_the_end(&self, now: &Facing<S, N>) -> bool {
-        self.pair.stays_farther(now, &self.pair.facing(self.end), self.distance.over)
-    }
-
-    /// If fixed planes take many steps, a turning one may take few. Returns the time until which it
-    /// proves the distance, or `next`. The first attempt is four times as long as the last success.
-    /// If that fails and the distance is reached, the next attempt ends before it. The line between
-    /// the distances at both ends estimates the time. Further attempts are a quarter as long.
-    #[inline(always)]
-    fn farther(&mut self, now: &Facing<S, N>, next: S) -> S {
-        let (t, over) = (self.at, self.distance.over);
-        let mut stride = self.stride;
-        for i in 0..if S::WIDE { TURNING[1] } else { TURNING[0] } {
-            let to = (t + stride).min(self.end);
-            if !(to > next) {
-                break;
-            }
-            let then = self.pair.facing(to);
-            if self.pair.stays_farther(now, &then, over) || self.pair.normal().is_farther((t, to), over) {
-                self.stride = (to - t) * S::of(4.0);
-                return to;
-            }
-            let (here, there) = (now.p.dot(now.p).sqrt(), then.p.dot(then.p).sqrt());
-            let reached = i == 0 && there < over;
-            let part = if reached { S::of(0.9) * (here - over) / (here - there) } else { S::of(0.25) };
-            stride = (to - t) * part;
-        }
-        self.stride = stride.max((next - t) * S::of(4.0));
-        next
-    }
-
-    /// Near at `from`: whether some later time is certain.
-    #[inline(always)]
-    fn look_ahead(&self, from: S) -> Advanced<S> {
-        let mut ahead = self.distance.time_tolerance + self.distance.time_tolerance;
-        for _ in 0..AHEAD {
-            let to = from + ahead;
-            if to >= self.end || !(to > from) {
-                break;
-            }
-            if self.pair.at_most(nearest(&self.pair.at(to))) <= self.distance.under {
-                return Advanced::Within { from, to };
-            }
-            ahead = ahead + ahead;
-        }
-        Advanced::Near { from }
-    }
-}
-
-impl<S: Grid, const N: usize> Pair<S, N> {
-    /// The computed nearest point is within this of the origin, and so is a point of the exact
-    /// hull.
-    #[inline(always)]
-    pub fn at_most(&self, p: Vec3<S>) -> S {
-        let error = self.point_error();
-        p.dot(p).sqrt() * S::INCLUSION_UP + (error + error)
-    }
-
-    #[inline(always)]
-    fn point_error(&self) -> S {
-        S::ADVANCE_POINT * self.reach + S::ISOLATE_UNDERFLOW
-    }
-
-    /// Least computed product of a control vector with `n` that proves it farther than the distance
-    /// along `n`. `n` has any length. That is the distance times the length of `n`, and the error
-    /// of the product. `ADVANCE_POINT` covers the roundings of the vector (4u) and of the inner
-    /// product (3u).
-    #[inline(always)]
-    pub(super) fn need(&self, n: Vec3<S>, over: S) -> S {
-        over * (n.dot(n).sqrt() * S::INCLUSION_UP) + sum(n) * self.point_error()
-    }
-
-    /// The time until which all control vectors are farther than the distance along `p`. `None` if
-    /// they are not even at the time of `x`.
-    ///
-    /// `n` is `p / |p|` as rounded. Suppose a computed value at the start is above `need` and at
-    /// the end below. Then the line between them is below the exact one. Its root, a quotient of
-    /// three roundings and this product, is rounded down.
-    #[inline(always)]
-    fn until(&self, Facing { x, p }: &Facing<S, N>, over: S) -> Option<S> {
-        let n = *p * (S::ONE / p.dot(*p).sqrt());
-        let need = self.need(n, over);
-        let mut next = S::NEVER;
-        for k in 0..N {
-            if !(n.dot(x[k]) > need) {
-                return None;
-            }
-            let (start, end) = (n.dot(self.w[k][0]) - need, n.dot(self.w[k][1]) - need);
-            // If it is above at the end, it is so all the way: it is linear, and above now.
-            if !(end > S::ZERO) {
-                if !(start > S::ZERO) {
-                    return None;
-                }
-                next = next.min(start / (start - end) * S::INCLUSION_DOWN);
-            }
-        }
-        Some(next)
+    pub fn steps(&self) -> u32 {
+        self.progress.steps
     }
 }
 

@@ -8,7 +8,7 @@ use crate::prim::inclusion::Grid;
 /// A cubic over [0, 1] by its Bernstein coefficients, and the error of a restricted coefficient.
 #[derive(Clone, Copy, Debug)]
 pub struct Cubic<S> {
-    k: [S; 4],
+    pub(super) k: [S; 4],
     /// A computed coefficient of a restriction beyond it has the exact one's sign:
     /// [`ISOLATE_CUBIC`] of the permanent.
     ///

@@ -20,7 +20,7 @@
 use super::advance::{Advance, Advanced, Distance};
 use super::find::{CellResult, Found};
 use super::pair::{Edges, Face, Pair};
-use super::separation::{ADVANCES, Double, Rung, Single, at_once, stepped};
+use super::separation::{ADVANCES, in_double, in_single};
 use crate::math::Real;
 use crate::math::tolerance::NEAR_FINEST;
 use crate::prim::cubic::Moving;
@@ -183,7 +183,7 @@ const NEARER: f64 = 1.0 / 8.0;
 #[inline(always)]
 pub fn near<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), part: f64, p: &Params) -> Verdict {
     let mut advance = nearness(pair, (begin, end), part, p);
-    nearly(advance.run(), advance.steps, p)
+    nearly(advance.run(), advance.steps(), p)
 }
 
 #[inline(always)]
@@ -266,13 +266,8 @@ fn climb<const N: usize>(
     p: &Params,
 ) -> Verdict {
     if p.min_separation > 0.0 {
-        let in_single = || {
-            let pair = single();
-            at_once(&pair, p).or_else(|| stepped(Single::begin(pair, p), p))
-        };
-        let first = if rungs == Rungs::Double { None } else { in_single() };
-        let last = || stepped(Double::begin(double(), p), p);
-        return first.or_else(last).unwrap_or_else(|| Verdict::undecided(0.0, p.end, 0, true));
+        let first = if rungs == Rungs::Double { None } else { in_single(&single(), p) };
+        return first.unwrap_or_else(|| in_double(double(), p));
     }
     if rejected(&single()) {
         return Verdict::separated(p.end, 0);

@@ -15,7 +15,7 @@
 //! | [`suspect`] | the certificate around a suspect time |
 //! | [`ladder`] | rungs, from f32 to f64, for pairs that signs leave uncertain |
 //! | [`separation`] | rungs of a minimum separation |
-//! | [`advance`], [`nearest`] | supporting planes, for a separation |
+//! | [`advance`], [`hull`], [`nearest`] | supporting planes, for a separation |
 //! | [`turning`], [`normal`] | planes that turn with the features |
 //!
 //! The answers and their proofs are those of [`crate::prim::inclusion`]. No pair that meets is
@@ -30,6 +30,7 @@
 pub mod advance;
 pub mod cubic;
 pub mod find;
+pub mod hull;
 pub mod ladder;
 pub mod nearest;
 pub mod normal;

@@ -21,42 +21,43 @@ fn clamped<S: Real>(x: S) -> S {
 }
 
 /// The region of the triangle with the origin's foot (Ericson, Real-Time Collision Detection,
-/// 5.1.5).
+/// 5.1.5). Without branches, so that lanes of a warp do the same: the first region that applies
+/// selects the quotients that the weights are.
 #[inline(always)]
-fn of_triangle<S: Real>(a: Vec3<S>, b: Vec3<S>, c: Vec3<S>) -> Vec3<S> {
+pub(super) fn of_triangle<S: Real>(a: Vec3<S>, b: Vec3<S>, c: Vec3<S>) -> Vec3<S> {
     let (ab, ac) = (b - a, c - a);
     let (d1, d2) = (-ab.dot(a), -ac.dot(a));
     let (d3, d4) = (-ab.dot(b), -ac.dot(b));
     let (d5, d6) = (-ab.dot(c), -ac.dot(c));
     let (va, vb, vc) = (d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2);
-    let zero = S::ZERO;
-    // Weights of b and c.
-    let (v, w) = if d1 <= zero && d2 <= zero {
-        (zero, zero)
-    } else if d3 >= zero && d4 <= d3 {
-        (S::ONE, zero)
-    } else if vc <= zero && d1 >= zero && d3 <= zero && d1 > d3 {
-        // Strictly: corners in one place have no side between them, and the others do.
-        (d1 / (d1 - d3), zero)
-    } else if d6 >= zero && d5 <= d6 {
-        (zero, S::ONE)
-    } else if vb <= zero && d2 >= zero && d6 <= zero {
-        (zero, d2 / (d2 - d6))
-    } else if va <= zero && d4 >= d3 && d5 >= d6 {
-        let w = clamped((d4 - d3) / ((d4 - d3) + (d5 - d6)));
-        (S::ONE - w, w)
-    } else {
-        let whole = va + vb + vc;
-        (vb / whole, vc / whole)
-    };
-    let v = clamped(v);
-    let w = clamped(w).min(S::ONE - v);
-    a * ((S::ONE - v) - w) + b * v + c * w
+    let (zero, one) = (S::ZERO, S::ONE);
+    let at_a = (d1 <= zero) & (d2 <= zero);
+    let at_b = !at_a & (d3 >= zero) & (d4 <= d3);
+    // Strictly: corners in one place have no side between them, and the others do.
+    let on_ab = !(at_a | at_b) & (vc <= zero) & (d1 >= zero) & (d3 <= zero) & (d1 > d3);
+    let no_c = at_a | at_b | on_ab;
+    let at_c = !no_c & (d6 >= zero) & (d5 <= d6);
+    let on_ac = !(no_c | at_c) & (vb <= zero) & (d2 >= zero) & (d6 <= zero);
+    let no_b = at_a | at_c | on_ac;
+    let on_bc = !(no_c | no_b) & (va <= zero) & (d4 >= d3) & (d5 >= d6);
+    // Weights of b and c as quotients; 1 / 1 if a corner, or another weight, decides.
+    let is_inside = !(no_c | no_b | on_bc);
+    let whole = if is_inside { va + vb + vc } else { one };
+    let v = if is_inside { vb } else { one };
+    let (v, of_v) = if on_ab { (d1, d1 - d3) } else { (v, whole) };
+    let w = if is_inside { vc } else { one };
+    let (w, of_w) = if on_ac { (d2, d2 - d6) } else { (w, whole) };
+    let (w, of_w) = if on_bc { (d4 - d3, (d4 - d3) + (d5 - d6)) } else { (w, of_w) };
+    let w = if no_c { zero } else { clamped(w / of_w) };
+    let v = if no_b { zero } else { clamped(v / of_v) };
+    let v = if on_bc { one - w } else { v };
+    let w = w.min(one - v);
+    a * ((one - v) - w) + b * v + c * w
 }
 
 /// The best of one edge, then of the other, clamped, and of the first again.
 #[inline(always)]
-fn of_parallelogram<S: Real>(w00: Vec3<S>, w01: Vec3<S>, w10: Vec3<S>, w11: Vec3<S>) -> Vec3<S> {
+pub(super) fn of_parallelogram<S: Real>(w00: Vec3<S>, w01: Vec3<S>, w10: Vec3<S>, w11: Vec3<S>) -> Vec3<S> {
     let (p, q) = (w10 - w00, w01 - w00);
     let (pp, qq, pq) = (p.dot(p), q.dot(q), p.dot(q));
     let (p0, q0) = (p.dot(w00), q.dot(w00));

@@ -40,7 +40,26 @@ impl<S: Grid, const N: usize> Pair<S, N> {
     }
 }
 
+/// Numbers of a normal.
+pub const NUMBERS: usize = 15;
+
 impl<S: Real> Normal<S> {
+    /// Its numbers, to be kept elsewhere.
+    #[inline(always)]
+    pub fn numbers(&self) -> [S; NUMBERS] {
+        let ([a, b, c, d], [x, y, z]) = (self.g.k, self.normal);
+        let Cubic { error, .. } = self.g;
+        [a, b, c, d, error, x[0], x[1], x[2], y[0], y[1], y[2], z[0], z[1], z[2], self.error]
+    }
+    /// The normal of such numbers.
+    #[inline(always)]
+    pub fn of_numbers(m: [S; NUMBERS]) -> Self {
+        Normal {
+            g: Cubic { k: [m[0], m[1], m[2], m[3]], error: m[4] },
+            normal: [Vec3([m[5], m[6], m[7]]), Vec3([m[8], m[9], m[10]]), Vec3([m[11], m[12], m[13]])],
+            error: m[14],
+        }
+    }
     /// Whether the features certainly stay farther apart than `over` in `[from, to]`. The cubic's
     /// coefficients must have one sign, beyond the distance times the longest coefficient of the
     /// normal. Both functions are in the hulls of their coefficients. About 100 operations.

@@ -18,6 +18,8 @@ pub struct Pair<S, const N: usize> {
     /// The two edges that span the hull, at both ends: differences of positions, rounded once. For
     /// a face those from its first corner; else both edges.
     pub edges: [[Vec3<S>; 2]; 2],
+    /// Whether it is a vertex and a face. In a form of four control vectors its last is there twice.
+    pub is_face: bool,
     /// The largest component of `w`.
     pub reach: S,
     /// The largest component by which a control vector moves, as computed.
@@ -76,7 +78,15 @@ impl<S: Grid, const N: usize> Pair<S, N> {
         let (reach, speed) = (most(reach), most(speed));
         let finite = finite && !p.min_separation.is_nan();
         let together = together & ((1 << N) - 1) != 0;
-        Pair { w, edges, reach, speed, finite, together, scale, end: S::end(p.end).0 }
+        Pair { w, edges, is_face: N == 3, reach, speed, finite, together, scale, end: S::end(p.end).0 }
+    }
+
+    /// The same pair in a form that both kinds have, so that lanes take them side by side.
+    #[inline(always)]
+    pub fn of_four(self) -> Pair<S, 4> {
+        let Pair { w, edges, is_face, reach, speed, finite, together, scale, end } = self;
+        let w = [w[0], w[1], w[2], w[N - 1]];
+        Pair { w, edges, is_face, reach, speed, finite, together, scale, end }
     }
 
     /// A length, in the units of the control vectors.

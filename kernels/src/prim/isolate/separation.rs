@@ -1,11 +1,12 @@
-//! The rungs of a separation: one or two planes in f32, advancement in f32, then advancement and
-//! nearness in f64.
+//! The rungs of a separation: advancement in f32, then advancement and nearness in f64.
 //!
-//! A rung runs step by step, so a GPU's lanes can take new pairs when they finish theirs. The first
-//! planes are a rung of their own: they decide nine of ten pairs, and all in the same time.
+//! A rung runs step by step, so a GPU can keep many pairs in step, or give a lane a new pair when
+//! one is finished.
 
-use super::advance::{Advance, Advanced, Distance};
+use super::advance::{Advance, Advanced, Ahead, Distance, Limits, Progress};
+use super::hull::Hull;
 use super::ladder::{met, nearly, nearness};
+use super::normal::Normal;
 use super::pair::Pair;
 use crate::prim::inclusion::{Grid, Params, Verdict};
 
@@ -15,113 +16,145 @@ const SINGLE: u32 = 24;
 pub(super) const ADVANCES: u32 = 32;
 
 #[inline(always)]
-fn separating<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, most: u32) -> Advance<S, N> {
+fn separation<S: Grid>(pair: &Pair<S, 4>, p: &Params) -> Distance<S> {
     let slack = pair.scaled(p.tolerance).max(S::ADVANCE_FINEST * pair.reach);
-    let distance = Distance::of(pair, pair.scaled(p.min_separation), slack);
-    Advance::new(*pair, (S::ZERO, pair.end), distance, most)
-}
-
-/// A rung of a separation, under way.
-pub trait Rung<const N: usize>: Copy {
-    /// The precision it is computed in.
-    type S: Grid;
-    /// Begins.
-    fn begin(pair: Pair<Self::S, N>, p: &Params) -> Self;
-    /// A step, whatever the tolerance of `p`: a pair keeps that which it began with. Once it was
-    /// the last, the verdict, or `None` if the next rung decides.
-    fn step(&mut self, p: &Params) -> Option<Option<Verdict>>;
-}
-
-/// All steps of a rung: its verdict, if it has one.
-#[inline(always)]
-pub fn stepped<T: Rung<N>, const N: usize>(mut rung: T, p: &Params) -> Option<Verdict> {
-    loop {
-        if let Some(told) = rung.step(p) {
-            return told;
-        }
-    }
-}
-
-/// The verdict of one or two planes in f32: separated, or within the separation at once.
-#[inline(always)]
-pub fn at_once<const N: usize>(pair: &Pair<f32, N>, p: &Params) -> Option<Verdict> {
-    let mut single = Single::begin(*pair, p);
-    match single.advance.fixed() {
-        Ok(told) => single.verdict(told, p),
-        Err((now, _)) => single.advance.stays_to_the_end(&now).then(|| Verdict::separated(p.end, 0)),
-    }
+    Distance::of(pair, pair.scaled(p.min_separation), slack)
 }
 
 /// In f32: separated, or when first within the separation, if that is known as well as the
-/// tolerance demands.
+/// tolerance demands. Of both kinds of pairs, so that lanes take them side by side.
 #[derive(Clone, Copy, Debug)]
-pub struct Single<const N: usize> {
-    advance: Advance<f32, N>,
+pub struct Single {
+    /// The pair.
+    pub hull: Hull<f32, 4>,
+    /// The separation.
+    pub distance: Distance<f32>,
     /// How well a time is to be known.
-    known: f32,
+    pub known: f32,
+    /// How far it is.
+    pub progress: Progress<f32>,
 }
 
-impl<const N: usize> Rung<N> for Single<N> {
-    type S = f32;
+impl Single {
+    /// At the start.
     #[inline(always)]
-    fn begin(pair: Pair<f32, N>, p: &Params) -> Self {
+    pub fn begin(pair: &Pair<f32, 4>, p: &Params) -> Self {
+        let mut progress = Progress::new(0.0, pair.end);
+        // Nothing is known of what is not finite.
+        progress.steps = if pair.finite { 0 } else { SINGLE };
         Single {
-            advance: separating(&pair, p, SINGLE),
+            hull: pair.hull(),
+            distance: separation(pair, p),
             known: 2.0 * pair.time_tolerance(pair.scaled(p.tolerance)),
+            progress,
         }
     }
+
     #[inline(always)]
-    fn step(&mut self, p: &Params) -> Option<Option<Verdict>> {
-        self.advance.step().map(|told| self.verdict(told, p))
+    fn limits(&self, p: &Params) -> Limits<f32> {
+        Limits { distance: self.distance, end: f32::end(p.end).0, most: SINGLE }
+    }
+
+    /// The first part of a step, see [`Progress::fixed`].
+    ///
+    /// # Errors
+    /// What the second part continues with.
+    #[inline(always)]
+    pub fn fixed(&mut self, p: &Params) -> Result<Advanced<f32>, Ahead<f32, 4>> {
+        self.progress.fixed(&self.hull, &self.limits(p))
+    }
+
+    /// The second part, see [`Progress::ahead`].
+    #[inline(always)]
+    pub fn ahead(
+        &mut self,
+        ahead: Ahead<f32, 4>,
+        p: &Params,
+        normal: impl Fn() -> Normal<f32>,
+    ) -> Option<Advanced<f32>> {
+        self.progress.ahead(&self.hull, &self.limits(p), ahead, normal)
     }
 }
 
-impl<const N: usize> Single<N> {
-    #[inline(always)]
-    fn verdict(&self, told: Advanced<f32>, p: &Params) -> Option<Verdict> {
-        match told {
-            Advanced::Apart => Some(Verdict::separated(p.end, 0)),
-            Advanced::Within { from, to } if to - from <= self.known => met(from, to, p),
-            _ => None,
+/// The verdict in f32, if a time is known that well; else the next rung decides.
+#[inline(always)]
+pub fn verdict(told: Advanced<f32>, known: f32, p: &Params) -> Option<Verdict> {
+    match told {
+        Advanced::Apart => Some(Verdict::separated(p.end, 0)),
+        Advanced::Within { from, to } if to - from <= known => met(from, to, p),
+        _ => None,
+    }
+}
+
+/// All of the rung in f32: its verdict, if it has one.
+#[inline(always)]
+pub fn in_single<const N: usize>(pair: &Pair<f32, N>, p: &Params) -> Option<Verdict> {
+    let mut single = Single::begin(&pair.of_four(), p);
+    loop {
+        let told = match single.fixed(p) {
+            Ok(told) => Some(told),
+            Err(ahead) => single.ahead(ahead, p, || pair.normal()),
+        };
+        if let Some(told) = told {
+            return verdict(told, single.known, p);
         }
     }
 }
 
 /// In f64: advancement to the separation; nearness if that does not decide.
 #[derive(Clone, Copy, Debug)]
-pub struct Double<const N: usize> {
-    pair: Pair<f64, N>,
-    advance: Advance<f64, N>,
+pub struct Double {
+    advance: Advance<f64, 4>,
     nearness: bool,
     /// The tolerance of the pair's two bodies, a length.
     tolerance: f64,
 }
 
-impl<const N: usize> Rung<N> for Double<N> {
-    type S = f64;
+impl Double {
+    /// At the start.
     #[inline(always)]
-    fn begin(pair: Pair<f64, N>, p: &Params) -> Self {
-        Double { pair, advance: separating(&pair, p, ADVANCES), nearness: false, tolerance: p.tolerance }
+    pub fn begin(pair: Pair<f64, 4>, p: &Params) -> Self {
+        let advance = Advance::new(pair, (0.0, pair.end), separation(&pair, p), ADVANCES);
+        Double { advance, nearness: false, tolerance: p.tolerance }
     }
+    /// Whether it is a vertex and a face.
     #[inline(always)]
-    fn step(&mut self, p: &Params) -> Option<Option<Verdict>> {
-        let told = self.advance.step()?;
+    pub fn is_face(&self) -> bool {
+        self.advance.pair().is_face
+    }
+    /// A step, whatever the tolerance of `p`: a pair keeps that which it began with. Once it was
+    /// the last, the verdict. `normal` is the pair's.
+    #[inline(always)]
+    pub fn step(&mut self, p: &Params, normal: impl Fn() -> Normal<f64>) -> Option<Verdict> {
+        let told = self.advance.go_on(normal)?;
         if self.nearness {
-            return Some(Some(nearly(told, self.advance.steps, p)));
+            return Some(nearly(told, self.advance.steps(), p));
         }
-        let undecided = |from: f64| Some(Some(Verdict::undecided(from.min(p.end), p.end, 0, false)));
+        let undecided = |from: f64| Some(Verdict::undecided(from.min(p.end), p.end, 0, false));
         let from = match told {
-            Advanced::Apart => return Some(Some(Verdict::separated(p.end, 0))),
+            Advanced::Apart => return Some(Verdict::separated(p.end, 0)),
             Advanced::Near { from } => return undecided(from),
             Advanced::Within { from, to } => match met(from, to, p) {
-                Some(verdict) => return Some(Some(verdict)),
+                Some(verdict) => return Some(verdict),
                 None => from,
             },
             Advanced::Open { from } => from,
         };
         let p = Params { tolerance: self.tolerance, ..*p };
-        self.advance = nearness(&self.pair, (from, self.pair.end), 1.0, &p);
+        let pair = *self.advance.pair();
+        self.advance = nearness(&pair, (from, pair.end), 1.0, &p);
         self.nearness = true;
         None
+    }
+}
+
+/// All of the rung in f64.
+#[inline(always)]
+pub fn in_double<const N: usize>(pair: Pair<f64, N>, p: &Params) -> Verdict {
+    let mut double = Double::begin(pair.of_four(), p);
+    loop {
+        if let Some(verdict) = double.step(p, || pair.normal()) {
+            return verdict;
+        }
     }
 }

@@ -11,29 +11,10 @@
 //! at a nearly constant distance use it up soon. This plane errs by the square of the angle only,
 //! whichever features are the nearest.
 
-use super::nearest::nearest;
-use super::pair::Pair;
-use crate::math::Vec3;
+use super::hull::{Facing, Hull};
 use crate::prim::inclusion::Grid;
 
-/// The hull at a time, and its direction.
-#[derive(Clone, Copy, Debug)]
-pub struct Facing<S, const N: usize> {
-    /// Control vectors.
-    pub x: [Vec3<S>; N],
-    /// The point nearest to the origin, as computed. Statements about planes along it hold for any
-    /// value.
-    pub p: Vec3<S>,
-}
-
-impl<S: Grid, const N: usize> Pair<S, N> {
-    /// The hull at a time, and its direction. About 120 operations.
-    #[inline(always)]
-    pub fn facing(&self, t: S) -> Facing<S, N> {
-        let x = self.at(t);
-        Facing { x, p: nearest(&x) }
-    }
-
+impl<S: Grid, const N: usize> Hull<S, N> {
     /// Whether the features certainly stay farther apart than `over` between the times of both.
     /// About 100 operations.
     ///
@@ -44,9 +25,9 @@ impl<S: Grid, const N: usize> Pair<S, N> {
         let middle = (first + last) * S::INCLUSION_UP;
         let mut farther = true;
         for k in 0..N {
-            farther &= from.p.dot(from.x[k]) > first
-                && to.p.dot(to.x[k]) > last
-                && from.p.dot(to.x[k]) + to.p.dot(from.x[k]) > middle;
+            farther &= (from.p.dot(from.x[k]) > first)
+                & (to.p.dot(to.x[k]) > last)
+                & (from.p.dot(to.x[k]) + to.p.dot(from.x[k]) > middle);
         }
         farther
     }

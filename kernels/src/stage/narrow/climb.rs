@@ -2,8 +2,8 @@
 //! Paper    not in the paper.
 //! Launch   [`isolate()`] in f32 over the survivors, then in f64 over the rest (or in one of them
 //!          over all). [`settle`] over the rest of that.
-//!          Then the slices of [`super::slice`] over the rest of that. With a separation:
-//!          [`separate_at_once`] over all, then [`super::separate`].
+//!          Then the slices of [`super::slice`] over the rest of that. A separation has rungs of its
+//!          own: [`super::abreast`], then [`super::separate`].
 //!          A lane a pair, both kinds in one launch. A block takes tiles of one kind; a grid of any
 //!          size strides.
 //! Reads    pairs, faces or edges, positions of both frames (four vertices); tolerances of bodies,
@@ -19,8 +19,7 @@
 //! Room     hits, left: counted past the end, grown, run again.
 //! Cost     8 B pair, 12 B indices, 128 B positions (gathered). Isolation: about 1,100 operations
 //!          for a pair with a root, as many in f64.
-//!          Settling: some 30 exact signs for pairs that touch at the start. The first planes of a
-//!          separation: 400 operations.
+//!          Settling: some 30 exact signs for pairs that touch at the start.
 
 use super::{edge_edge, lower, of_edge_edge, of_vertex_face, vertex_face};
 use crate::abi::{Hit, Listed, Pair, RungArgs, RungFlags, counter, earliest};
@@ -28,7 +27,6 @@ use crate::exec::{Block, Lane, Slot};
 use crate::math::Real;
 use crate::prim::inclusion::{Grid, Verdict};
 use crate::prim::isolate::ladder::{ee_touch, isolated, settled, vf_touch};
-use crate::prim::isolate::separation::at_once;
 use crate::prim::isolate::{self, Edges, Face};
 
 /// Isolation of roots, positions in R, computed in S.
@@ -69,24 +67,6 @@ pub fn settle<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
                 (of_edge_edge(lane, args, pair), edge_edge(lane, &args.frames, args.edges, pair));
             let pair = Edges::<f64>::new(x, y, &p);
             unless_later(lane, args, &pair, |pair| settled(pair, || ee_touch(x, y), all, &p).ok())
-        },
-    );
-}
-
-/// The first rung of a separation, in f32.
-pub fn separate_at_once<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
-    rung(
-        block,
-        args,
-        |lane, pair| {
-            let (p, (v, f)) =
-                (of_vertex_face(lane, args, pair), vertex_face(lane, &args.frames, args.faces, pair));
-            at_once(&Face::new(v, f, &p), &p)
-        },
-        |lane, pair| {
-            let (p, [x, y]) =
-                (of_edge_edge(lane, args, pair), edge_edge(lane, &args.frames, args.edges, pair));
-            at_once(&Edges::new(x, y, &p), &p)
         },
     );
 }

@@ -13,10 +13,11 @@
 //! none. [`features`] turns triangle pairs into vertex/face and edge/edge candidates, each once.
 //! [`cull`] drops those that certainly stay apart.
 //!
-//! The certified solver is the rungs of [`climb`], [`mod@slice`] and [`separate`]: they find
-//! contacts and bound their first times, with proof. The paper's solver is [`solve`], by the cubic.
+//! The certified solver is the rungs of [`climb`] and [`mod@slice`], or with a separation of
+//! [`abreast`] and [`separate`]: they find contacts and bound their first times, with proof. The paper's solver is [`solve`], by the cubic.
 //! [`below_precision`] counts contacts that are too large for the tolerance, if any can be.
 
+pub mod abreast;
 pub mod below_precision;
 pub mod certain;
 pub mod climb;

@@ -1,47 +1,42 @@
 //! # Separate: pairs that may come within a separation → proven contacts
 //! Paper    not in the paper.
-//! Launch   as many blocks as are resident, both kinds of pairs in one launch. In f32 over the rest
-//!          of `climb::separate_at_once`.
-//!          Then in f64 over the rest of that, or over all. Advancements differ in length: a lane
-//!          takes one step, then the next.
+//! Launch   as many blocks as are resident, both kinds of pairs in one launch. In f64, over the rest
+//!          of [`super::abreast`] or over all. Advancements differ in length: a lane takes one step,
+//!          then the next.
 //!          A finished lane draws the next pair of its block, so few lanes idle.
 //!          A block's pairs are a grid apart. The kinds begin at opposite ends of the grid.
 //! Reads    pairs, faces or edges, positions of both frames (four vertices); tolerances of bodies,
 //!          if they differ.
-//! Writes   contacts and undecided pairs with bounds of toi; or the earliest. In f32 the rest, in
-//!          its own list.
+//! Writes   contacts and undecided pairs with bounds of toi; or the earliest.
 //! Before   pairs are complete.
-//! After    {pairs that come within the separation} ⊆ listed ∪ left; no time is late. See
+//! After    {pairs that come within the separation} ⊆ listed; no time is late. See
 //!          [`crate::prim::isolate::advance`].
-//!          A pair whose steps run out in f64 is listed as undecided.
-//! Room     hits, left: counted past the end, grown, run again.
+//!          A pair whose steps run out is listed as undecided.
+//! Room     hits: counted past the end, grown, run again.
 //! Cost     8 B pair, 12 B indices, 128 B positions (gathered). 300 to 600 operations a step,
 //!          mostly two to fifteen steps.
 
 use super::climb::emit;
 use super::{edge_edge, of_edge_edge, of_vertex_face, vertex_face};
-use crate::abi::{Listed, Pair, RungArgs};
-use crate::exec::{Block, Lane, Shared};
+use crate::abi::{Pair, RungArgs};
+use crate::exec::{Block, Lane};
 use crate::math::Real;
-use crate::prim::inclusion::Params;
-use crate::prim::isolate::separation::Rung;
-use crate::prim::isolate::{self, Edges, Face};
+use crate::prim::isolate::normal::{NUMBERS, Normal};
+use crate::prim::isolate::separation::Double;
+use crate::prim::isolate::{Edges, Face};
 
-/// Bytes of shared memory of a block: the numbers of pairs drawn.
-pub const SHARED: u32 = 8;
+/// Bytes of shared memory of a block: a normal a lane, and the numbers of pairs drawn.
+pub const fn shared_bytes(lanes: u32) -> u32 {
+    8 * NUMBERS as u32 * lanes + 8
+}
 
-/// All pairs of a list, by a rung.
+/// All pairs of both lists.
 #[inline(always)]
-pub fn separate<R: Real, V: Rung<3>, E: Rung<4>, B: Block>(block: &mut B, args: &RungArgs<R>) {
-    let share = |block: &B, of: &Listed, first: u32, drawn: u32| WorkRange {
-        count: of.pairs.listed(block) as u64,
-        first: first as u64,
-        stride: block.blocks() as u64,
-        drawn,
-    };
-    let vf = share(block, &args.vf, block.block(), 0);
-    let ee = share(block, &args.ee, block.blocks() - 1 - block.block(), 1);
-    let drawn = block.shared::<u32>(2);
+pub fn separate<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
+    let (first, blocks) = (block.block(), block.blocks());
+    let (count_vf, count_ee) = (args.vf.pairs.listed(block), args.ee.pairs.listed(block));
+    let lanes = block.lanes();
+    let (normals, drawn) = (block.shared::<u64>(NUMBERS as u32 * lanes), block.shared::<u32>(2));
     block.phase(|lane| {
         if lane.lane() == 0 {
             lane.put(drawn, 0, 0);
@@ -49,76 +44,62 @@ pub fn separate<R: Real, V: Rung<3>, E: Rung<4>, B: Block>(block: &mut B, args: 
         }
     });
     block.phase(|lane| {
-        advance::<R, V, 3, _>(
-            lane,
-            args,
-            &args.vf,
-            &vf,
-            drawn,
-            |pair| of_vertex_face(lane, args, pair),
-            |pair, p| {
-                let (v, f) = vertex_face(lane, &args.frames, args.faces, pair);
-                Face::new(v, f, p)
-            },
-        );
-        advance::<R, E, 4, _>(
-            lane,
-            args,
-            &args.ee,
-            &ee,
-            drawn,
-            |pair| of_edge_edge(lane, args, pair),
-            |pair, p| {
-                let [x, y] = edge_edge(lane, &args.frames, args.edges, pair);
-                Edges::new(x, y, p)
-            },
-        );
+        // The normal does not change: it is computed once, and needs no registers.
+        let put = |normal: Normal<f64>| {
+            let numbers = normal.numbers();
+            for k in 0..NUMBERS {
+                lane.put(normals, k as u32 * lanes + lane.lane(), numbers[k].to_bits());
+            }
+        };
+        let normal = || {
+            let mut numbers = [0.0; NUMBERS];
+            for k in 0..NUMBERS {
+                numbers[k] = f64::from_bits(lane.get(normals, k as u32 * lanes + lane.lane()));
+            }
+            Normal::of_numbers(numbers)
+        };
+        let mut under_way: Option<(Pair, Double)> = None;
+        // A quarter of the lanes begins with vertices and faces, so that few warps have both kinds.
+        let (mut is_face, mut kinds) = (lane.lane() < lanes / 4, 2);
+        while lane.any(kinds > 0 || under_way.is_some()) {
+            if kinds > 0 && under_way.is_none() {
+                let i = blocks as u64 * lane.shared_add(drawn, is_face as u32, 1) as u64;
+                let (i, count) = if is_face {
+                    (i + first as u64, count_vf)
+                } else {
+                    (i + (blocks - 1 - first) as u64, count_ee)
+                };
+                if i >= count as u64 {
+                    (is_face, kinds) = (!is_face, kinds - 1);
+                } else if is_face {
+                    let pair = args.vf.pairs.get(lane, i as u32);
+                    let p = of_vertex_face(lane, args, pair);
+                    let (v, f) = vertex_face(lane, &args.frames, args.faces, pair);
+                    let face = Face::new(v, f, &p);
+                    put(face.normal());
+                    under_way = Some((pair, Double::begin(face.of_four(), &p)));
+                } else {
+                    let pair = args.ee.pairs.get(lane, i as u32);
+                    let p = of_edge_edge(lane, args, pair);
+                    let [x, y] = edge_edge(lane, &args.frames, args.edges, pair);
+                    let edges = Edges::new(x, y, &p);
+                    put(edges.normal());
+                    under_way = Some((pair, Double::begin(edges, &p)));
+                }
+            }
+            // Lanes that drew and lanes that did not step side by side.
+            if lane.any(under_way.is_some())
+                && let Some((pair, double)) = &mut under_way
+                && let Some(verdict) = double.step(&args.params, normal)
+            {
+                if double.is_face() {
+                    emit(lane, args, &args.vf, *pair, verdict);
+                } else {
+                    emit(lane, args, &args.ee, *pair, verdict);
+                }
+                under_way = None;
+            }
+        }
         lane.meet();
     });
-}
-
-/// A block's pairs of one kind: that numbered `first`, and every `stride` on.
-struct WorkRange {
-    count: u64,
-    first: u64,
-    stride: u64,
-    /// Which shared word counts those that are drawn.
-    drawn: u32,
-}
-
-/// Draws pairs and advances them until there are no more.
-#[inline(always)]
-fn advance<R: Real, T: Rung<N>, const N: usize, L: Lane>(
-    lane: &L,
-    args: &RungArgs<R>,
-    of: &Listed,
-    share: &WorkRange,
-    drawn: Shared<u32>,
-    params: impl Fn(Pair) -> Params,
-    motion: impl Fn(Pair, &Params) -> isolate::Pair<T::S, N>,
-) {
-    let mut under_way: Option<(Pair, T)> = None;
-    let mut more = true;
-    while lane.any(more || under_way.is_some()) {
-        if more && under_way.is_none() {
-            let i = share.first + share.stride * lane.shared_add(drawn, share.drawn, 1) as u64;
-            more = i < share.count;
-            if more {
-                let pair = of.pairs.get(lane, i as u32);
-                let p = params(pair);
-                under_way = Some((pair, T::begin(motion(pair, &p), &p)));
-            }
-        }
-        // Lanes that drew and lanes that did not step side by side.
-        if lane.any(under_way.is_some())
-            && let Some((pair, rung)) = &mut under_way
-            && let Some(answer) = rung.step(&args.params)
-        {
-            match answer {
-                Some(verdict) => emit(lane, args, of, *pair, verdict),
-                None => of.left.push(lane, *pair),
-            }
-            under_way = None;
-        }
-    }
 }
