@@ -3,7 +3,7 @@
 
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::isolate::nearest::nearest;
-use nearmiss_support::triangles::{anywhere, corners, on_grid, random};
+use support::triangles::{anywhere, corners, on_grid, random};
 
 /// The first region that applies, and the weights of the second and the third corner there. Of a
 /// fault one region has those of another.
@@ -53,9 +53,8 @@ fn compared<S: Real>(fault: bool) -> ([u32; 7], u32) {
         let v = clamped(v);
         let w = clamped(w).min(S::ONE - v);
         let known = x[0] * ((S::ONE - v) - w) + x[1] * v + x[2] * w;
-        others += u32::from(
-            known.map(|x| x.wide()).0.map(f64::to_bits) != nearest(&x).map(|x| x.wide()).0.map(f64::to_bits),
-        );
+        let bits = |x: Vec3<S>| x.0.map(|x| x.wide().to_bits());
+        others += u32::from(bits(known) != bits(nearest(&x)));
     }
     (regions, others)
 }
