@@ -17,14 +17,14 @@ pub use gpu::Gpu;
 /// GPU's lanes go side by side: work for one of them costs all of them, and a branch around it
 /// more.
 pub const ALONE: bool = cfg!(not(target_arch = "nvptx64"));
-/// The smaller and the larger of two finite numbers, of two zeros either. The square root,
-/// correctly rounded on every machine.
+/// The smaller and the larger of two finite numbers, of two zeros either. A quotient that divides
+/// no zero. The square root. The last two are correctly rounded on every machine.
 #[cfg(target_arch = "nvptx64")]
-pub use raw::{greater32, lesser32, sqrt32, sqrt64};
+pub use raw::{greater32, lesser32, ratio32, ratio64, sqrt32, sqrt64};
 
 #[cfg(not(target_arch = "nvptx64"))]
 mod host;
 #[cfg(not(target_arch = "nvptx64"))]
-pub use host::{greater32, lesser32};
+pub use host::{greater32, lesser32, ratio32, ratio64};
 #[cfg(not(target_arch = "nvptx64"))]
 pub use libm::{sqrt as sqrt64, sqrtf as sqrt32};

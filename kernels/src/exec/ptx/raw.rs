@@ -48,6 +48,39 @@ pub fn greater32(a: f32, b: f32) -> f32 {
     f32::max(a, b)
 }
 
+/// `over / under`; of two zeros either, if `over` is zero. The division of a zero is a subroutine,
+/// for which all lanes of a warp wait. So such a lane divides another number. In assembly: the compiler
+/// would see that this number is not needed.
+#[inline(always)]
+pub fn ratio32(over: f32, under: f32) -> f32 {
+    let r: u32;
+    // SAFETY: instructions on registers.
+    unsafe {
+        asm!("{{ .reg .pred z; .reg .f32 x, y, n; mov.b32 x, {x}; mov.b32 y, {y};",
+            "setp.ne.f32 z, y, 0f00000000;",
+            "setp.eq.and.f32 z, x, 0f00000000, z; selp.f32 n, y, x, z; div.rn.f32 n, n, y;",
+            "selp.f32 n, 0f00000000, n, z; mov.b32 {r}, n; }}",
+            x = in(reg32) over.to_bits(), y = in(reg32) under.to_bits(), r = lateout(reg32) r,
+            options(pure, nomem, nostack));
+    }
+    f32::from_bits(r)
+}
+/// The same in f64.
+#[inline(always)]
+pub fn ratio64(over: f64, under: f64) -> f64 {
+    let r: u64;
+    // SAFETY: instructions on registers.
+    unsafe {
+        asm!("{{ .reg .pred z; .reg .f64 x, y, n; mov.b64 x, {x}; mov.b64 y, {y};",
+            "setp.ne.f64 z, y, 0d0000000000000000;",
+            "setp.eq.and.f64 z, x, 0d0000000000000000, z; selp.f64 n, y, x, z; div.rn.f64 n, n, y;",
+            "selp.f64 n, 0d0000000000000000, n, z; mov.b64 {r}, n; }}",
+            x = in(reg64) over.to_bits(), y = in(reg64) under.to_bits(), r = lateout(reg64) r,
+            options(pure, nomem, nostack));
+    }
+    f64::from_bits(r)
+}
+
 /// The square root of an f32.
 pub fn sqrt32(x: f32) -> f32 {
     let r: u32;

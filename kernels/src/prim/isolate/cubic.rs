@@ -173,7 +173,8 @@ impl<S: Real> Root<S> {
         } else {
             self.high = self.at;
         }
-        let next = self.at - f / slope(o, self.at);
+        // The value at a root that is found is mostly 0.
+        let next = self.at - f.ratio(slope(o, self.at));
         // Not strictly: that would bisect away from a root that is found. NaN bisects.
         let inside = next >= self.low && next <= self.high;
         let before = self.at;

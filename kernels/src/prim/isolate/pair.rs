@@ -188,7 +188,8 @@ impl<S: Real> Window<S> {
     /// The rest of the step until `end`, widened by the errors of the ends.
     #[inline(always)]
     pub fn within(&self, end: S) -> Option<(S, S)> {
-        let (from, to) = (self.from.0 / self.from.1, self.to.0 / self.to.1);
+        // Mostly the begin is that of the step, 0.
+        let (from, to) = (self.from.0.ratio(self.from.1), self.to.0 / self.to.1);
         if self.empty | (from > to + S::ISOLATE_WINDOW) {
             return None;
         }
