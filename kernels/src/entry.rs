@@ -273,6 +273,8 @@ const WIDE: u32 = 256;
 /// Lanes of kernels with long or uneven work: small blocks, so that few lanes wait for a long one
 /// (measured: `benches/NOTES.md`).
 const NARROW: u32 = 64;
+/// Lanes of the rung in f64: few pairs, spread over all warps that run at once.
+const SPREAD: u32 = 32;
 /// Lanes of rejection, of the rungs of a separation and of distances: work is uneven, and two lists
 /// are appended to.
 const RUNG: u32 = 128;
@@ -327,10 +329,10 @@ kernels! {
     narrow_ee_f64_f64: solve::ee::<f64, f64, B>, [SolveArgs<f64>], WIDE, 0;
     narrow_below_precision_f32: below_precision::below_precision::<f32, B>, [BelowPrecisionArgs<f32>], WIDE, 0;
     narrow_below_precision_f64: below_precision::below_precision::<f64, B>, [BelowPrecisionArgs<f64>], WIDE, 0;
-    narrow_isolate_f32_f32: climb::isolate::<f32, f32, B>, [RungArgs<f32>], NARROW, 0, registers = 112;
-    narrow_isolate_f32_f64: climb::isolate::<f32, f64, B>, [RungArgs<f32>], NARROW, 0;
-    narrow_isolate_f64_f32: climb::isolate::<f64, f32, B>, [RungArgs<f64>], NARROW, 0;
-    narrow_isolate_f64_f64: climb::isolate::<f64, f64, B>, [RungArgs<f64>], NARROW, 0;
+    narrow_isolate_f32_f32: climb::isolate::<f32, B>, [RungArgs<f32>], NARROW, 0, registers = 112;
+    narrow_isolate_f32_f64: climb::isolate_and_settle::<f32, B>, [RungArgs<f32>], SPREAD, 0;
+    narrow_isolate_f64_f32: climb::isolate::<f64, B>, [RungArgs<f64>], NARROW, 0;
+    narrow_isolate_f64_f64: climb::isolate_and_settle::<f64, B>, [RungArgs<f64>], SPREAD, 0;
     narrow_settle_f32: climb::settle::<f32, B>, [RungArgs<f32>], NARROW, 0;
     narrow_settle_f64: climb::settle::<f64, B>, [RungArgs<f64>], NARROW, 0;
     narrow_slice_f32: slice::slice::<f32, B>, [RungArgs<f32>], SLICES, slice::SHARED;

@@ -17,9 +17,9 @@ use nearmiss_kernels::entry::Entry;
 enum Rung {
     /// Isolation of roots in f32.
     Isolate32,
-    /// Isolation of roots in f64.
+    /// Isolation of roots in f64; touching at the start, and flat motion.
     Isolate64,
-    /// Touching at the start, and flat motion.
+    /// Touching at the start, directions, nearness: what f32 leaves, if there is no f64.
     Settle,
     /// The time window in slices.
     Slice,
@@ -35,21 +35,17 @@ fn rungs(certified: &Certified) -> &'static [Rung] {
         (CertifiedPrecision::F64, true) => &[Rung::Separate64],
         (CertifiedPrecision::Mixed | CertifiedPrecision::F32, true) => &[Rung::Separate32, Rung::Separate64],
         (CertifiedPrecision::F32, false) => &[Rung::Isolate32, Rung::Settle],
-        (CertifiedPrecision::F64, false) => &[Rung::Isolate64, Rung::Settle, Rung::Slice],
-        (CertifiedPrecision::Mixed, false) => &[Rung::Isolate32, Rung::Isolate64, Rung::Settle, Rung::Slice],
+        (CertifiedPrecision::F64, false) => &[Rung::Isolate64, Rung::Slice],
+        (CertifiedPrecision::Mixed, false) => &[Rung::Isolate32, Rung::Isolate64, Rung::Slice],
     }
 }
 
 /// The lists that rungs leave: a name for comparisons of machines, a name for errors, and the
 /// counter.
-const LEFT: [[(&str, &str, Counter); 2]; 3] = [
+const LEFT: [[(&str, &str, Counter); 2]; 2] = [
     [
         ("narrow: vf for f64", "vertex/face pairs for f64", counter::VF_ESCALATED),
         ("narrow: ee for f64", "edge/edge pairs for f64", counter::EE_ESCALATED),
-    ],
-    [
-        ("narrow: vf left open", "vertex/face pairs left open", counter::VF_OPEN),
-        ("narrow: ee left open", "edge/edge pairs left open", counter::EE_OPEN),
     ],
     [
         ("narrow: vf for slices", "vertex/face pairs for slices", counter::VF_HARD),
@@ -62,8 +58,7 @@ impl Rung {
     fn left(self) -> usize {
         match self {
             Rung::Isolate32 | Rung::Separate32 => 0,
-            Rung::Isolate64 => 1,
-            Rung::Settle | Rung::Slice | Rung::Separate64 => 2,
+            Rung::Isolate64 | Rung::Settle | Rung::Slice | Rung::Separate64 => 1,
         }
     }
 }
@@ -192,7 +187,11 @@ fn start<R: Precision>(
 ) -> Result<(), Error> {
     match rung {
         Rung::Isolate32 => launch::striding::<R::Isolate32>(device, capacity, args),
-        Rung::Isolate64 => launch::striding::<R::Isolate64>(device, capacity, args),
+        // All warps that run at once share the pairs; there are few.
+        Rung::Isolate64 => {
+            let lanes = R::Isolate64::LANES as usize;
+            launch::at_once::<R::Isolate64>(device, capacity.saturating_mul(lanes), args)
+        }
         Rung::Settle => launch::striding::<R::Settle>(device, capacity, args),
         // A block per pair; there are few.
         Rung::Slice => {

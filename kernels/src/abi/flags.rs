@@ -97,8 +97,7 @@ flags! {
     }
     /// Flags of a rung: [`RungArgs`](super::RungArgs).
     RungFlags {
-        /// `narrow_isolate` accepts a contact with any bounds of its time. `narrow_settle` leaves
-        /// nothing to a next rung.
+        /// `narrow_isolate` accepts a contact with any bounds of its time.
         EVERYTHING,
     }
 }

@@ -4,7 +4,7 @@ use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::Moving;
 use nearmiss_kernels::prim::inclusion::{self, Params, Verdict};
 use nearmiss_kernels::prim::isolate::ladder::{
-    SLICES, Slice, ee_touch, is_flat, isolated, near, searched, sliced, vf_touch,
+    SLICES, Slice, ee_touch, is_flat, isolated, isolated_last, near, searched, sliced, vf_touch,
 };
 use nearmiss_kernels::prim::isolate::{Edges, Face, Pair, Rungs, ee_certified, vf_certified};
 use nearmiss_lab::{Case, Features};
@@ -115,9 +115,13 @@ fn climb<const N: usize>(
         return (if flat { Rung::Parted } else { Rung::Single }, verdict);
     }
     let Some(window) = double.window() else { return (Rung::Double, apart) };
-    if let Some(verdict) = isolated(double, p, true) {
-        let near = !verdict.is_separated() && !verdict.is_contact();
-        return (if near { Rung::Close } else { Rung::Double }, verdict);
+    match isolated_last(double, p) {
+        Ok(verdict) => {
+            let near = !verdict.is_separated() && !verdict.is_contact();
+            return (if near { Rung::Close } else { Rung::Double }, verdict);
+        }
+        // The kernels leave out the exact test then.
+        Err(apart) => assert!(!(apart && touch), "isolation parts features that touch at the start"),
     }
     if window.0 <= 0.0 && touch {
         return (Rung::Touch, Verdict::TOUCHING);

@@ -10,8 +10,8 @@
 //! | [`searched`] | the rest, by boxes of [`crate::prim::inclusion`] | f64 |
 //!
 //! With a separation, the rungs are those of [`super::separation`]. Every rung is a function of the
-//! pair and of the parameters, so the answer is. [`vf_certified`] and [`ee_certified`] climb for
-//! one pair as the kernels do for a list.
+//! pair and of the parameters, so the answer is. [`super::certified`] climbs for one
+//! pair as the kernels do for a list.
 //!
 //! Without a separation no verdict of a rung begins before [`Pair::not_before`] of the rung's own
 //! pair. An earliest query skips pairs by that law, whatever their verdicts would be.
@@ -20,7 +20,7 @@
 use super::advance::{Advance, Advanced, Distance};
 use super::find::{CellResult, Found};
 use super::pair::{Edges, Face, Pair};
-use super::separation::{ADVANCES, in_double, in_single};
+use super::separation::ADVANCES;
 use crate::math::Real;
 use crate::math::tolerance::NEAR_FINEST;
 use crate::prim::cubic::Moving;
@@ -38,17 +38,6 @@ const AGAIN: u32 = 3;
 /// The time around a suspect that is tested, in time tolerances, if signs need no more: first, and
 /// in a slice. Both sides are less than two time tolerances.
 const AROUND: [f64; 2] = [0.9, 0.03];
-/// Which rungs there are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rungs {
-    /// All.
-    All,
-    /// Roots are isolated in f32 alone, and nothing is sliced or searched.
-    Single,
-    /// Roots are isolated in f64 alone.
-    Double,
-}
-
 /// Whether the features certainly do not meet in the step. Either their boxes never overlap, or the
 /// four points never share a plane. Signs of the cubic show the latter, over the step or over the
 /// window. About 150 operations.
@@ -69,9 +58,19 @@ pub fn rejected_before<const N: usize>(pair: &Pair<f32, N>, horizon: f32) -> boo
 /// tolerance. The `last` rung that isolates accepts any contact.
 #[inline(always)]
 pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bool) -> Option<Verdict> {
-    let Some(window) = pair.window() else { return Some(Verdict::separated(p.end, 0)) };
+    isolated_from(pair, p, last).ok()
+}
+
+/// The same.
+///
+/// # Errors
+/// Without a verdict, a time before which there is no contact. If it is not the start, there is
+/// none at the start either.
+#[inline(always)]
+fn isolated_from<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bool) -> Result<Verdict, S> {
+    let Some(window) = pair.window() else { return Ok(Verdict::separated(p.end, 0)) };
     if pair.together {
-        return Some(Verdict::TOUCHING);
+        return Ok(Verdict::TOUCHING);
     }
     let time_tolerance = pair.time_tolerance(pair.scaled(p.tolerance));
     // f32 has a rung behind it that resolves more.
@@ -79,22 +78,68 @@ pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bo
     let (again, near) = if closer { (AGAIN, near_enough(pair, p)) } else { (0, S::ZERO) };
     let look = CellResult { around: time_tolerance * S::of(AROUND[0]), steps: STEPS[0], again, near };
     let verdict = match pair.isolate(pair.with_margin(window), look) {
-        Found::Apart => Some(Verdict::separated(p.end, 0)),
+        Found::Apart => Ok(Verdict::separated(p.end, 0)),
         Found::Meets { from, to }
             if last || (from > S::ZERO && to - from <= time_tolerance + time_tolerance) =>
         {
-            met(from, to, p)
+            met(from, to, p).ok_or(from)
         }
-        Found::Near { from } => Some(Verdict::undecided(from.wide(), p.end, 0, false)),
+        Found::Near { from } => Ok(Verdict::undecided(from.wide(), p.end, 0, false)),
         // Motion in one plane, of a body that moves as a whole for example, has no signs. A
         // direction decides it.
         Found::Open { from, flat: true } if pair.misses_throughout(from, window.1) => {
-            Some(Verdict::separated(p.end, 0))
+            Ok(Verdict::separated(p.end, 0))
         }
-        _ => None,
+        Found::Meets { from, .. } | Found::Open { from, .. } => Err(from),
     };
     // A time around a root near the window's begin begins before it.
     verdict.map(|verdict| verdict.not_before(pair.not_before(window)))
+}
+
+/// Whether [`vf_settled`] or [`ee_settled`] may decide a pair that isolation in f64 leaves: it may
+/// touch at the start, or moves in one plane. Given whether it is certainly apart at the start.
+#[inline(always)]
+pub fn may_settle<const N: usize>(pair: &Pair<f64, N>, apart: bool) -> bool {
+    pair.window().is_none_or(|window| (!apart && window.0 <= 0.0) || is_flat(pair, window))
+}
+
+/// Isolation in f64, without a rung behind it that isolates.
+///
+/// # Errors
+/// Without a verdict, whether the features are certainly apart at the start: isolation proves that
+/// there is no contact before some time, which is later.
+#[inline(always)]
+pub fn isolated_last<const N: usize>(pair: &Pair<f64, N>, p: &Params) -> Result<Verdict, bool> {
+    isolated_from(pair, p, true).map_err(|from| from > 0.0)
+}
+
+/// What isolation in f64 leaves, of a vertex and a face: touching at the start, unless the features
+/// are known to be apart there, and flat motion. By value and out of line: few pairs come here, and
+/// the others keep their registers.
+#[inline(never)]
+pub fn vf_settled<R: Real>(v: Moving<R>, f: [Moving<R>; 3], apart: bool, p: Params) -> Option<Verdict> {
+    settled(&Face::new(v, f, &p), || !apart && vf_touch(v, f), false, &p).ok()
+}
+
+/// The same of two edges.
+#[inline(never)]
+pub fn ee_settled<R: Real>(a: [Moving<R>; 2], b: [Moving<R>; 2], apart: bool, p: Params) -> Option<Verdict> {
+    settled(&Edges::new(a, b, &p), || !apart && ee_touch(a, b), false, &p).ok()
+}
+
+/// What a slice leaves open from some time on, of a vertex and a face: nearness, then a search. By
+/// value and out of line, as [`vf_settled`].
+#[inline(never)]
+pub fn vf_searched<R: Real>(v: Moving<R>, f: [Moving<R>; 3], from: f64, p: Params) -> Verdict {
+    let search = |known| searched(inclusion::Face::<f64>::new(v, f, &p), known, &p);
+    left_open(&Face::new(v, f, &p), from, search, &p)
+}
+
+/// The same of two edges.
+#[inline(never)]
+pub fn ee_searched<R: Real>(a: [Moving<R>; 2], b: [Moving<R>; 2], from: f64, p: Params) -> Verdict {
+    let search = |known| searched(inclusion::Edges::<f64>::new(a, b, &p), known, &p);
+    left_open(&Edges::new(a, b, &p), from, search, &p)
 }
 
 /// A contact, if it is certain to be within the step.
@@ -137,7 +182,7 @@ pub fn is_flat<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64)) ->
 }
 
 /// Slice `i` of the window. About 3,000 operations.
-#[inline]
+#[inline(always)]
 pub fn sliced<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), i: u32, p: &Params) -> Slice {
     // Both slices at a cut compute the same number; the last ends with the window.
     let (begin, end) = pair.with_margin((begin, end));
@@ -240,57 +285,6 @@ fn later(found: Verdict, known: Verdict, p: &Params) -> Verdict {
     }
 }
 
-/// Whether, and when, a vertex first comes within the separation of a closed face, by all rungs
-/// that there are.
-#[inline]
-pub fn vf_certified<R: Real>(v: Moving<R>, f: [Moving<R>; 3], rungs: Rungs, p: &Params) -> Verdict {
-    let touch = || vf_touch(v, f);
-    let search = |known| searched(inclusion::Face::<f64>::new(v, f, p), known, p);
-    climb(|| Face::<f32>::new(v, f, p), || Face::<f64>::new(v, f, p), (touch, search), rungs, p)
-}
-
-/// Whether, and when, two closed edges first come within the separation, by all rungs that there
-/// are.
-#[inline]
-pub fn ee_certified<R: Real>(a: [Moving<R>; 2], b: [Moving<R>; 2], rungs: Rungs, p: &Params) -> Verdict {
-    let touch = || ee_touch(a, b);
-    let search = |known| searched(inclusion::Edges::<f64>::new(a, b, p), known, p);
-    climb(|| Edges::<f32>::new(a, b, p), || Edges::<f64>::new(a, b, p), (touch, search), rungs, p)
-}
-
-fn climb<const N: usize>(
-    single: impl Fn() -> Pair<f32, N>,
-    double: impl Fn() -> Pair<f64, N>,
-    (touch, search): (impl Fn() -> bool, impl Fn(Verdict) -> Verdict),
-    rungs: Rungs,
-    p: &Params,
-) -> Verdict {
-    if p.min_separation > 0.0 {
-        let first = if rungs == Rungs::Double { None } else { in_single(&single(), p) };
-        return first.unwrap_or_else(|| in_double(double(), p));
-    }
-    if rejected(&single()) {
-        return Verdict::separated(p.end, 0);
-    }
-    let first = if rungs == Rungs::Double { None } else { isolated(&single(), p, rungs == Rungs::Single) };
-    if let Some(verdict) = first {
-        return verdict;
-    }
-    let pair = double();
-    if rungs != Rungs::Single
-        && let Some(verdict) = isolated(&pair, p, true)
-    {
-        return verdict;
-    }
-    match settled(&pair, touch, rungs == Rungs::Single, p) {
-        Ok(verdict) => verdict,
-        Err(window) => {
-            let first = (0..SLICES).map(|i| sliced(&pair, window, i, p)).find(|s| *s != Slice::Apart);
-            decided(&pair, first.unwrap_or(Slice::Apart), window, search, p)
-        }
-    }
-}
-
 /// The rungs behind isolation without slices: touching at the start, no window, flat motion; with
 /// `all`, everything. Else the window for the slices.
 ///
@@ -317,24 +311,30 @@ pub fn settled<const N: usize>(
     Ok(near(pair, window, if all { NEARER } else { 1.0 }, p))
 }
 
-/// The rungs behind the slices, given the first that is not apart.
-#[inline]
-pub fn decided<const N: usize>(
-    pair: &Pair<f64, N>,
-    first: Slice,
-    window: (f64, f64),
-    search: impl Fn(Verdict) -> Verdict,
-    p: &Params,
-) -> Verdict {
+/// The rungs behind the slices, given the first that is not apart, and the time before which no
+/// verdict of the pair begins. `open` decides
+#[inline(always)]
+pub fn decided(first: Slice, begin: f64, open: impl FnOnce(f64) -> Verdict, p: &Params) -> Verdict {
     let verdict = match first {
         Slice::Apart => Verdict::separated(p.end, 0),
         Slice::Meets(verdict) => verdict,
         Slice::Near(from) => Verdict::undecided(from, p.end, 0, false),
-        Slice::Open(from) => {
-            let verdict = near(pair, (from, window.1), 1.0, p);
-            if verdict.is_separated() { verdict } else { search(verdict) }
-        }
+        Slice::Open(from) => open(from),
     };
     // A time around a root near the window's begin begins before it.
-    verdict.not_before(pair.not_before(window))
+    verdict.not_before(begin)
+}
+
+/// The verdict of a pair that a slice leaves open from some time on: by nearness, then by a search
+/// of boxes.
+#[inline(always)]
+fn left_open<const N: usize>(
+    pair: &Pair<f64, N>,
+    from: f64,
+    search: impl FnOnce(Verdict) -> Verdict,
+    p: &Params,
+) -> Verdict {
+    let Some(window) = pair.window() else { return Verdict::separated(p.end, 0) };
+    let verdict = near(pair, (from, window.1), 1.0, p);
+    if verdict.is_separated() { verdict } else { search(verdict) }
 }

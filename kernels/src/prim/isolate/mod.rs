@@ -14,6 +14,7 @@
 //! | [`find`] | cuts the window, finds suspect times |
 //! | [`suspect`] | the certificate around a suspect time |
 //! | [`ladder`] | rungs, from f32 to f64, for pairs that signs leave uncertain |
+//! | [`certified`] | all rungs, for one pair |
 //! | [`separation`] | rungs of a minimum separation |
 //! | [`advance`], [`hull`], [`nearest`] | supporting planes, for a separation |
 //! | [`turning`], [`normal`] | planes that turn with the features |
@@ -28,6 +29,7 @@
 #![allow(clippy::needless_range_loop, reason = "loops by index unroll: nothing goes to memory on the GPU")]
 
 pub mod advance;
+pub mod certified;
 pub mod cubic;
 pub mod find;
 pub mod hull;
@@ -39,5 +41,5 @@ pub mod separation;
 pub mod suspect;
 pub mod turning;
 
-pub use ladder::{Rungs, ee_certified, vf_certified};
+pub use certified::{Rungs, ee_certified, vf_certified};
 pub use pair::{Edges, Face, Pair};

@@ -1,11 +1,12 @@
 //! # Climb: vertex/face and edge/edge pairs → proven contacts; the rest, for the next rung
 //! Paper    not in the paper.
-//! Launch   [`isolate()`] in f32 over the survivors, then in f64 over the rest (or in one of them
-//!          over all). [`settle`] over the rest of that.
-//!          Then the slices of [`super::slice`] over the rest of that. A separation has rungs of its
-//!          own: [`super::abreast`], then [`super::separate`].
+//! Launch   [`isolate()`] in f32 over the survivors, then [`isolate_and_settle()`] in f64 over the
+//!          rest (or one of them over all), then the slices of [`super::slice`] over the rest of
+//!          that. If f32 is all, [`settle`] over what it leaves. A separation has rungs of its own:
+//!          [`super::abreast`], then [`super::separate`].
 //!          A lane a pair, both kinds in one launch. A block takes tiles of one kind; a grid of any
-//!          size strides.
+//!          size strides. In f64 it is as many blocks of one warp as run at once: few pairs are
+//!          left, and they are spread over all of them, 16 lanes of a warp at least.
 //! Reads    pairs, faces or edges, positions of both frames (four vertices); tolerances of bodies,
 //!          if they differ.
 //! Writes   contacts and undecided pairs with bounds of toi; or one number, for an earliest query.
@@ -18,19 +19,23 @@
 //!          So the result is the same in any order.
 //! Room     hits, left: counted past the end, grown, run again.
 //! Cost     8 B pair, 12 B indices, 128 B positions (gathered). Isolation: about 1,100 operations
-//!          for a pair with a root, as many in f64.
-//!          Settling: some 30 exact signs for pairs that touch at the start.
+//!          for a pair with a root, as many in f64. There instructions are few, and waiting for
+//!          their code and for each other is the time.
+//!          Settling: some 30 exact signs for pairs that may touch at the start.
 
 use super::{edge_edge, lower, of_edge_edge, of_vertex_face, vertex_face};
-use crate::abi::{Hit, Listed, Pair, RungArgs, RungFlags, counter, earliest};
+use crate::abi::{Counter, Hit, Listed, Pair, RungArgs, RungFlags, counter, earliest};
 use crate::exec::{Block, Lane, Slot};
 use crate::math::Real;
-use crate::prim::inclusion::{Grid, Verdict};
-use crate::prim::isolate::ladder::{ee_touch, isolated, settled, vf_touch};
+use crate::prim::inclusion::{Grid, Params, Verdict};
+use crate::prim::isolate::ladder::{
+    ee_settled, ee_touch, isolated, isolated_last, may_settle, settled, vf_settled, vf_touch,
+};
 use crate::prim::isolate::{self, Edges, Face};
 
-/// Isolation of roots, positions in R, computed in S.
-pub fn isolate<R: Real, S: Grid, B: Block>(block: &mut B, args: &RungArgs<R>) {
+/// Isolation of roots in f32, positions in R. With [`RungFlags::EVERYTHING`] it accepts any
+/// contact.
+pub fn isolate<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
     let last = args.flags.has(RungFlags::EVERYTHING);
     rung(
         block,
@@ -38,21 +43,66 @@ pub fn isolate<R: Real, S: Grid, B: Block>(block: &mut B, args: &RungArgs<R>) {
         |lane, pair| {
             let (p, (v, f)) =
                 (of_vertex_face(lane, args, pair), vertex_face(lane, &args.frames, args.faces, pair));
-            let pair = Face::<S>::new(v, f, &p);
-            unless_later(lane, args, &pair, |pair| isolated(pair, &p, last))
+            let pair = Face::<f32>::new(v, f, &p);
+            unless_later(lane, args, &pair, |pair| isolated(pair, &p, last).into())
         },
         |lane, pair| {
             let (p, [x, y]) =
                 (of_edge_edge(lane, args, pair), edge_edge(lane, &args.frames, args.edges, pair));
-            let pair = Edges::<S>::new(x, y, &p);
-            unless_later(lane, args, &pair, |pair| isolated(pair, &p, last))
+            let pair = Edges::<f32>::new(x, y, &p);
+            unless_later(lane, args, &pair, |pair| isolated(pair, &p, last).into())
         },
     );
 }
 
-/// Touching at the start, and flat motion; with [`RungFlags::EVERYTHING`] all that is left.
+/// Isolation of roots in f64, positions in R; then touching at the start, and flat motion.
+#[inline(always)]
+pub fn isolate_and_settle<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
+    let vf = |lane: &B::Lane, pair| {
+        (of_vertex_face(lane, args, pair), vertex_face(lane, &args.frames, args.faces, pair))
+    };
+    let ee = |lane: &B::Lane, pair| {
+        (of_edge_edge(lane, args, pair), edge_edge(lane, &args.frames, args.edges, pair))
+    };
+    let [vf_tiles, ee_tiles] = dealt(block, args, true);
+    let open = Settle {
+        count: counter::VF_OPEN,
+        settle: |lane: &B::Lane, pair, apart| {
+            let (p, (v, f)) = vf(lane, pair);
+            vf_settled(v, f, apart, p)
+        },
+    };
+    each(block, args, (&args.vf, vf_tiles), Some(open), |lane, pair| {
+        let (p, (v, f)) = vf(lane, pair);
+        let pair = Face::<f64>::new(v, f, &p);
+        unless_later(lane, args, &pair, |pair| in_double(pair, &p))
+    });
+    let open = Settle {
+        count: counter::EE_OPEN,
+        settle: |lane: &B::Lane, pair, apart| {
+            let (p, [x, y]) = ee(lane, pair);
+            ee_settled(x, y, apart, p)
+        },
+    };
+    each(block, args, (&args.ee, ee_tiles), Some(open), |lane, pair| {
+        let (p, [x, y]) = ee(lane, pair);
+        let pair = Edges::<f64>::new(x, y, &p);
+        unless_later(lane, args, &pair, |pair| in_double(pair, &p))
+    });
+}
+
+#[inline(always)]
+fn in_double<const N: usize>(pair: &isolate::Pair<f64, N>, p: &Params) -> Tested {
+    match isolated_last(pair, p) {
+        Ok(verdict) => Tested::Verdict(verdict),
+        Err(apart) if may_settle(pair, apart) => Tested::Settle { apart },
+        Err(_) => Tested::Open,
+    }
+}
+
+/// All that isolation in f32 leaves, if there is no other rung: touching at the start, directions,
+/// nearness.
 pub fn settle<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
-    let all = args.flags.has(RungFlags::EVERYTHING);
     rung(
         block,
         args,
@@ -60,51 +110,114 @@ pub fn settle<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
             let (p, (v, f)) =
                 (of_vertex_face(lane, args, pair), vertex_face(lane, &args.frames, args.faces, pair));
             let pair = Face::<f64>::new(v, f, &p);
-            unless_later(lane, args, &pair, |pair| settled(pair, || vf_touch(v, f), all, &p).ok())
+            unless_later(lane, args, &pair, |pair| settled(pair, || vf_touch(v, f), true, &p).ok().into())
         },
         |lane, pair| {
             let (p, [x, y]) =
                 (of_edge_edge(lane, args, pair), edge_edge(lane, &args.frames, args.edges, pair));
             let pair = Edges::<f64>::new(x, y, &p);
-            unless_later(lane, args, &pair, |pair| settled(pair, || ee_touch(x, y), all, &p).ok())
+            unless_later(lane, args, &pair, |pair| settled(pair, || ee_touch(x, y), true, &p).ok().into())
         },
     );
 }
 
-/// The verdict. It is "separated" if only the earliest is wanted and no verdict of the pair begins
+/// The test. It is "separated" if only the earliest is wanted and no verdict of the pair begins
 /// before a known time.
 #[inline(always)]
 fn unless_later<R: Real, S: Grid, L: Lane, const N: usize>(
     lane: &L,
     args: &RungArgs<R>,
     pair: &isolate::Pair<S, N>,
-    test: impl FnOnce(&isolate::Pair<S, N>) -> Option<Verdict>,
-) -> Option<Verdict> {
+    test: impl FnOnce(&isolate::Pair<S, N>) -> Tested,
+) -> Tested {
     if !args.earliest.is_empty()
         && let Some(window) = pair.window()
         && earliest::key(pair.not_before(window), false) >= lane.fetch_load(args.earliest, earliest::KEY)
     {
-        return Some(Verdict::separated(args.params.end, 0));
+        return Tested::Verdict(Verdict::separated(args.params.end, 0));
     }
     test(pair)
 }
 
-/// The fate of a pair: nothing, [`LISTED`] or [`LEFT`]. Both are counted in one word.
-const LISTED: u32 = 1;
-const LEFT: u32 = 1 << 16;
+/// What a rung finds.
+#[derive(Clone, Copy)]
+enum Tested {
+    /// Decided.
+    Verdict(Verdict),
+    /// Left to the next rung.
+    Open,
+    /// Not decided by isolation; perhaps by [`Settle`].
+    Settle {
+        /// Whether the features are certainly apart at the start.
+        apart: bool,
+    },
+}
 
-/// Tests each pair of both kinds. The kinds begin at opposite ends of the grid, so short lists
-/// spread over it.
+impl From<Option<Verdict>> for Tested {
+    #[inline(always)]
+    fn from(verdict: Option<Verdict>) -> Self {
+        verdict.map_or(Tested::Open, Tested::Verdict)
+    }
+}
+
+/// What is done with the pairs of a kind that isolation leaves: they are counted, and those that
+/// ask for it are settled. In a phase of its own, which reads a pair anew: such pairs are few, and
+/// the others keep their registers.
+struct Settle<F> {
+    count: Counter,
+    settle: F,
+}
+
+/// The tiles of a kind for a block.
+#[derive(Clone, Copy)]
+struct Tiles {
+    /// How many pairs there are.
+    count: u32,
+    /// The block's first tile; then one a grid on.
+    first: u32,
+    /// How many pairs a tile has.
+    width: u32,
+}
+
+/// Deals pairs to blocks in tiles: those of vertices and faces, then those of edges, a block's
+/// tiles a grid apart. A tile has as many pairs as a block has lanes. If `spread`, it may have
+/// fewer, so that a short list is spread over the grid and each block has a tile at most. Few lanes of a warp
+/// then wait for each other.
+#[inline(always)]
+fn dealt<R: Real, B: Block>(block: &B, args: &RungArgs<R>, spread: bool) -> [Tiles; 2] {
+    let (block_at, blocks, lanes) = (block.block(), block.blocks(), block.lanes());
+    let [vf, ee] = [&args.vf, &args.ee].map(|of| of.pairs.listed(block));
+    // Each kind may have a tile that is not full.
+    let fewest = || (vf as u64 + ee as u64).div_ceil(blocks.max(3) as u64 - 2);
+    let width = if spread { fewest().clamp(FEWEST.min(lanes) as u64, lanes as u64) as u32 } else { lanes };
+    let behind = vf.div_ceil(width) % blocks;
+    let first = if block_at < behind { block_at + blocks - behind } else { block_at - behind };
+    [Tiles { count: vf, first: block_at, width }, Tiles { count: ee, first, width }]
+}
+
+/// Least pairs of a tile. With fewer, more warps fetch the same code at different times, which
+/// costs more than they save (measured: `benches/NOTES.md`).
+const FEWEST: u32 = 16;
+
+/// The fate of a pair: nothing, [`LISTED`] or [`LEFT`], and perhaps [`OPEN`]. All are counted in
+/// one word, each below [`MOST`].
+const LISTED: u32 = 1;
+const LEFT: u32 = 1 << 10;
+const OPEN: u32 = 1 << 20;
+const MOST: u32 = 1 << 10;
+
+/// Tests each pair of both kinds.
 #[inline(always)]
 fn rung<R: Real, B: Block>(
     block: &mut B,
     args: &RungArgs<R>,
-    vf: impl Fn(&B::Lane, Pair) -> Option<Verdict>,
-    ee: impl Fn(&B::Lane, Pair) -> Option<Verdict>,
+    vf: impl Fn(&B::Lane, Pair) -> Tested,
+    ee: impl Fn(&B::Lane, Pair) -> Tested,
 ) {
-    let (first, blocks) = (block.block(), block.blocks());
-    each(block, args, &args.vf, first, vf);
-    each(block, args, &args.ee, blocks - 1 - first, ee);
+    let [vf_tiles, ee_tiles] = dealt(block, args, false);
+    let none = || None::<Settle<fn(&B::Lane, Pair, bool) -> Option<Verdict>>>;
+    each(block, args, (&args.vf, vf_tiles), none(), vf);
+    each(block, args, (&args.ee, ee_tiles), none(), ee);
 }
 
 /// Tests each pair of one kind. Lists undecided pairs and contacts; leaves pairs without an answer
@@ -113,44 +226,68 @@ fn rung<R: Real, B: Block>(
 fn each<R: Real, B: Block>(
     block: &mut B,
     args: &RungArgs<R>,
-    of: &Listed,
-    first: u32,
-    test: impl Fn(&B::Lane, Pair) -> Option<Verdict>,
+    (of, tiles): (&Listed, Tiles),
+    open: Option<Settle<impl Fn(&B::Lane, Pair, bool) -> Option<Verdict>>>,
+    test: impl Fn(&B::Lane, Pair) -> Tested,
 ) {
-    let (lanes, stride) = (block.lanes(), block.blocks() * block.lanes());
-    let count = of.pairs.listed(block);
+    let Tiles { count, first, width } = tiles;
+    let stride = block.blocks() * width;
     let mut hits = block.slot(Hit::default());
     let mut wishes = block.slot(0u32);
     let mut places = block.slot(0u32);
-    let mut base = first * lanes;
+    let mut asked = block.slot(0u32);
+    let mut base = first * width;
     while base < count {
         block.phase(|lane| {
             let i = base + lane.lane();
-            let mut wish = 0;
-            if i < count {
+            let (mut wish, mut asks) = (0, 0);
+            if lane.lane() < width && i < count {
                 let pair = of.pairs.get(lane, i);
-                let answer = test(lane, pair);
-                *hits.of(lane) = Hit { a: pair.a, b: pair.b, verdict: answer.unwrap_or_default() };
-                wish = match answer {
-                    None => LEFT,
+                let found = test(lane, pair);
+                let verdict = if let Tested::Verdict(verdict) = found { Some(verdict) } else { None };
+                *hits.of(lane) = Hit { a: pair.a, b: pair.b, verdict: verdict.unwrap_or_default() };
+                wish = match verdict {
+                    None => LEFT + if open.is_some() { OPEN } else { 0 },
                     Some(verdict) if keep(lane, args, verdict) => LISTED,
                     Some(_) => 0,
                 };
+                if let Tested::Settle { apart } = found {
+                    asks = 1 + apart as u32;
+                }
             }
             *wishes.of(lane) = wish;
             *places.of(lane) = wish;
+            *asked.of(lane) = asks;
             lane.meet();
         });
+        if let Some(Settle { settle, .. }) = &open {
+            block.phase(|lane| {
+                let asks = *asked.of(lane);
+                if asks > 0 {
+                    let hit = hits.of(lane);
+                    if let Some(verdict) = settle(lane, Pair { a: hit.a, b: hit.b }, asks > 1) {
+                        hit.verdict = verdict;
+                        let wish = OPEN + if keep(lane, args, verdict) { LISTED } else { 0 };
+                        *wishes.of(lane) = wish;
+                        *places.of(lane) = wish;
+                    }
+                }
+                lane.meet();
+            });
+        }
         let total = block.scan(&mut places);
-        let wanted = [(total & (LEFT - 1)) as u64, (total / LEFT) as u64];
+        if let Some(Settle { count, .. }) = &open {
+            args.counters.add_once(block, *count, (total / OPEN) as u64);
+        }
+        let wanted = [(total % MOST) as u64, (total / LEFT % MOST) as u64];
         let [start, start_left] = block.reserve_both([of.hits.count(), of.left.count()], wanted);
         block.phase(|lane| {
-            let (wish, before, hit) = (*wishes.of(lane), *places.of(lane), *hits.of(lane));
-            let place = start + (before & (LEFT - 1)) as u64;
+            let (wish, before, hit) = (*wishes.of(lane) % OPEN, *places.of(lane), *hits.of(lane));
+            let place = start + (before % MOST) as u64;
             if wish == LISTED {
                 of.hits.put(lane, place, hit);
             }
-            let place = start_left + (before / LEFT) as u64;
+            let place = start_left + (before / LEFT % MOST) as u64;
             if wish == LEFT {
                 of.left.put(lane, place, Pair { a: hit.a, b: hit.b });
             }
