@@ -37,7 +37,7 @@ const NORMAL: u32 = 17;
 const INDICES: u32 = 24;
 /// Neighbours in the list that one block takes: near each other, so that they share vertices.
 const GROUP: u64 = 8;
-/// The least number of pairs that are taken up at a time: whole warps.
+/// Pairs are taken up in whole warps.
 const WARP: u32 = 32;
 
 /// Pairs of a block that may be under way, for each two lanes.
@@ -71,7 +71,9 @@ pub fn abreast<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
     loop {
         let left = own - begun;
         if left > 0 && line.waiting() < lanes {
-            let some = (line.free / WARP * WARP).min(lanes).min(left.min(lanes as u64) as u32);
+            // Some, if none waits: then all places are free, and there are more than lanes.
+            let unit = WARP.min(lanes);
+            let some = (line.free / unit * unit).min(lanes).min(left.min(lanes as u64) as u32);
             block.phase(|lane| {
                 if lane.lane() < some {
                     let of_block = begun + lane.lane() as u64;

@@ -199,12 +199,9 @@ fn dealt<R: Real, B: Block>(block: &B, args: &RungArgs<R>, spread: bool) -> [Til
 /// costs more than they save (measured: `benches/NOTES.md`).
 const FEWEST: u32 = 16;
 
-/// The fate of a pair: nothing, [`LISTED`] or [`LEFT`], and perhaps [`OPEN`]. All are counted in
-/// one word, each below [`MOST`].
+/// The fate of a pair: nothing, [`LISTED`] or [`LEFT`]. Both are counted in one word.
 const LISTED: u32 = 1;
-const LEFT: u32 = 1 << 10;
-const OPEN: u32 = 1 << 20;
-const MOST: u32 = 1 << 10;
+const LEFT: u32 = 1 << 16;
 
 /// Tests each pair of both kinds.
 #[inline(always)]
@@ -236,6 +233,7 @@ fn each<R: Real, B: Block>(
     let mut wishes = block.slot(0u32);
     let mut places = block.slot(0u32);
     let mut asked = block.slot(0u32);
+    let mut opened = block.slot(0u32);
     let mut base = first * width;
     while base < count {
         block.phase(|lane| {
@@ -247,7 +245,7 @@ fn each<R: Real, B: Block>(
                 let verdict = if let Tested::Verdict(verdict) = found { Some(verdict) } else { None };
                 *hits.of(lane) = Hit { a: pair.a, b: pair.b, verdict: verdict.unwrap_or_default() };
                 wish = match verdict {
-                    None => LEFT + if open.is_some() { OPEN } else { 0 },
+                    None => LEFT,
                     Some(verdict) if keep(lane, args, verdict) => LISTED,
                     Some(_) => 0,
                 };
@@ -258,6 +256,7 @@ fn each<R: Real, B: Block>(
             *wishes.of(lane) = wish;
             *places.of(lane) = wish;
             *asked.of(lane) = asks;
+            *opened.of(lane) = (wish == LEFT) as u32;
             lane.meet();
         });
         if let Some(Settle { settle, .. }) = &open {
@@ -267,7 +266,7 @@ fn each<R: Real, B: Block>(
                     let hit = hits.of(lane);
                     if let Some(verdict) = settle(lane, Pair { a: hit.a, b: hit.b }, asks > 1) {
                         hit.verdict = verdict;
-                        let wish = OPEN + if keep(lane, args, verdict) { LISTED } else { 0 };
+                        let wish = if keep(lane, args, verdict) { LISTED } else { 0 };
                         *wishes.of(lane) = wish;
                         *places.of(lane) = wish;
                     }
@@ -277,17 +276,18 @@ fn each<R: Real, B: Block>(
         }
         let total = block.scan(&mut places);
         if let Some(Settle { count, .. }) = &open {
-            args.counters.add_once(block, *count, (total / OPEN) as u64);
+            let opened = block.scan(&mut opened);
+            args.counters.add_once(block, *count, opened as u64);
         }
-        let wanted = [(total % MOST) as u64, (total / LEFT % MOST) as u64];
+        let wanted = [(total & (LEFT - 1)) as u64, (total / LEFT) as u64];
         let [start, start_left] = block.reserve_both([of.hits.count(), of.left.count()], wanted);
         block.phase(|lane| {
-            let (wish, before, hit) = (*wishes.of(lane) % OPEN, *places.of(lane), *hits.of(lane));
-            let place = start + (before % MOST) as u64;
+            let (wish, before, hit) = (*wishes.of(lane), *places.of(lane), *hits.of(lane));
+            let place = start + (before & (LEFT - 1)) as u64;
             if wish == LISTED {
                 of.hits.put(lane, place, hit);
             }
-            let place = start_left + (before / LEFT % MOST) as u64;
+            let place = start_left + (before / LEFT) as u64;
             if wish == LEFT {
                 of.left.put(lane, place, Pair { a: hit.a, b: hit.b });
             }
