@@ -7,6 +7,7 @@ mod columns;
 mod compiled;
 mod engine;
 mod interrupt;
+mod lane;
 mod observer;
 mod order;
 mod prefetch;

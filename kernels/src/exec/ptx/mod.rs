@@ -10,6 +10,8 @@ mod coherent;
 mod gpu;
 #[cfg(target_arch = "nvptx64")]
 mod raw;
+#[cfg(target_arch = "nvptx64")]
+mod thread;
 
 #[cfg(target_arch = "nvptx64")]
 pub use gpu::Gpu;
