@@ -33,11 +33,11 @@ pub enum Act {
     },
     /// The event of that number.
     Mark(usize),
-    /// What follows, until [`Act::Back`], comes after what went before and beside what follows that.
+    /// Steps from here to [`Act::Back`] come after earlier ones, and at the same time as later ones.
     Aside,
     /// See [`Act::Aside`].
     Back,
-    /// What follows comes after what went beside.
+    /// Later steps come after all that went aside.
     Join,
 }
 
@@ -201,8 +201,8 @@ impl Replay {
 }
 
 impl Device {
-    /// Does work beside what follows, until [`Device::join`]. Neither needs what the other writes.
-    /// It is done in its turn on a CPU, outside a replay, and when stages are timed.
+    /// Does work at the same time as later work, until [`Device::join`]. Neither needs what the other
+    /// writes. It is done in its turn on a CPU, outside a replay, and when stages are timed.
     ///
     /// # Errors
     /// Errors of the work.
@@ -213,7 +213,7 @@ impl Device {
         done
     }
 
-    /// What follows comes after all work that went beside.
+    /// Later work comes after all work of [`Device::beside`].
     pub(crate) fn join(&self) {
         self.lists(Act::Join);
     }

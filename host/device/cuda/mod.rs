@@ -57,7 +57,7 @@ pub struct Cuda {
     stream: Stream,
     /// The stream for recording graphs, one at a time. Nothing else uses it meanwhile.
     recorder: Mutex<Stream>,
-    /// The stream for work that goes beside.
+    /// The stream for work that runs at the same time.
     side: Mutex<Side>,
     context: Arc<Context>,
 }

@@ -149,10 +149,10 @@ impl Drop for Event {
     }
 }
 
-/// A second stream, for work that goes beside that of another.
+/// A second stream, for work at the same time as that of another.
 pub struct Side {
     stream: Stream,
-    /// Where the two part, and where they meet.
+    /// The point at which the two part, or meet.
     event: Event,
     /// Whether the other stream has not met it since.
     is_away: bool,

@@ -45,8 +45,8 @@ enum Step {
     Features,
     /// Lists those that may meet.
     Cull,
-    /// Counts the triangle pairs that share a point at the start, beside the next step: that one is
-    /// mostly a wait for few pairs.
+    /// Counts the triangle pairs that share a point at the start, at the same time as the next step.
+    /// That one mostly waits for few pairs.
     Start,
     /// Solves for contacts.
     Solve,

@@ -104,7 +104,8 @@ impl Volume for Linear {
     /// Suppose some t meets all six. Then each true begin is at most each true end, so a computed
     /// begin is at most `7u` above a computed end. The products of [`Window::is_empty`] and their
     /// sum take another `4u`, or four halves of a subnormal. `MOVING_TIME` is `16u`, and the least
-    /// normal number is added.
+    /// normal number is added. So boxes with differences below 1e-19 or above 1e19 are not apart by
+    /// this, only by the ends of the step.
     ///
     /// Bounds are finite and so small that no sum of differences overflows, or infinite outward.
     /// Then a difference is infinite upward only. If it is d1, the begin is finite over infinite. If

@@ -16,7 +16,7 @@ mod obb;
 pub use aabb::Aabb;
 pub use contain::Contain;
 pub use group::{GROUP, Points};
-pub use linear::Linear;
+pub use linear::{Linear, Window};
 pub use obb::Obb;
 
 use crate::math::tolerance::NEAR_GROWTH;

@@ -59,14 +59,13 @@ fn each_query_launches_what_it_needs() {
     assert_eq!(near, (exact.0, 5, near.2));
     // Fit, refit (one launch for a small tree), the walk; then one float test, or filters in f32 and f64 and exact signs, or sift
     // and what rejects by signs, with the three filters again at the start of the step; then the rungs of
-    // certified solvers, both kinds in one launch: isolation, by default in f32 and again in f64, what touches or is flat, and slices unless f32 is alone; or other solvers, of each
+    // certified solvers, both kinds in one launch: isolation, by default in f32 and again in f64, and slices, or what touches or is flat if f32 is alone; or other solvers, of each
     // kind a launch.
-    assert_eq!([moller.1, exact.1, continuous.1, earliest.1], [4, 6, 12, 12]);
+    assert_eq!([moller.1, exact.1, continuous.1, earliest.1], [4, 6, 11, 11]);
     for solver in Solver::ALL.into_iter().filter(|solver| solver.answers(QueryKind::Continuous)) {
         let launches = [QueryKind::Continuous, QueryKind::Earliest].map(|motion| frame(by(motion, solver)).1);
         let rungs = match solver {
-            Solver::Certified => 4,
-            Solver::CertifiedF64 => 3,
+            Solver::Certified => 3,
             _ => 2,
         };
         assert_eq!(launches, [8 + rungs; 2], "{solver:?}");

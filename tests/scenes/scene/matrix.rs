@@ -85,13 +85,13 @@ fn asks(motion: QueryKind, bodies: usize) -> bool {
 fn launches_of_a_frame() {
     // A walk, and the rounds of what it spilled; two rounds of samples, and a walk.
     let walk = 1 + nearmiss_kernels::abi::ROUNDS as u64;
-    // Narrow: filter, f64 and exact signs; these at the start, features, cull and four rungs; the
+    // Narrow: filter, f64 and exact signs; these at the start, features, cull and three rungs; the
     // same; features and distances; signs as of a discrete query, the least distance, its first
     // pair, and where that is nearest.
     let stages = [
         (QueryKind::Discrete, walk, 3),
-        (QueryKind::Continuous, walk, 9),
-        (QueryKind::Earliest, walk, 9),
+        (QueryKind::Continuous, walk, 8),
+        (QueryKind::Earliest, walk, 8),
         (QueryKind::Near, walk, 2),
         (QueryKind::Distance, 3, 6),
     ];

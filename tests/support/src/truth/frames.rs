@@ -31,7 +31,7 @@ pub const CLOTH: Scene = Scene {
     t1: "cloth-ball/cloth_ball93.ply",
     list: "cloth-ball/true_contacts.csv.gz",
     candidates: [1_655_541, 5_197_332],
-    near: [241_868, 818_114],
+    near: [246_179, 840_796],
     earliest: 7.49206918682e-06,
 };
 pub const BALLS: Scene = Scene {
@@ -40,7 +40,7 @@ pub const BALLS: Scene = Scene {
     t1: "n-body/n-body_t1.ply",
     list: "n-body/true_contacts.csv.gz",
     candidates: [9_396_388, 22_366_873],
-    near: [47_326, 193_557],
+    near: [57_011, 206_635],
     earliest: 0.0,
 };
 
