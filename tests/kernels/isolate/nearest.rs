@@ -5,7 +5,7 @@ use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::isolate::nearest::nearest;
 use support::triangles::{anywhere, corners, on_grid, random};
 
-/// The first region that applies, and the weights of the second and the third corner there. Of a
+/// The first region that applies, and the weights of the second and the third corner there. With a
 /// fault one region has those of another.
 fn weights<S: Real>([a, b, c]: [Vec3<S>; 3], fault: bool) -> (usize, S, S) {
     let (ab, ac) = (b - a, c - a);
