@@ -58,7 +58,7 @@ pub struct Cuda {
     /// The stream for recording graphs, one at a time. Nothing else uses it meanwhile.
     recorder: Mutex<Stream>,
     /// The stream for work that runs at the same time.
-    side: Mutex<Side>,
+    side: Box<Mutex<Side>>,
     context: Arc<Context>,
 }
 
@@ -138,7 +138,7 @@ impl Cuda {
             functions: Mutex::default(),
             stream,
             recorder: Mutex::new(recorder),
-            side: Mutex::new(side),
+            side: Box::new(Mutex::new(side)),
             context,
         })
     }

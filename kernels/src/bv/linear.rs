@@ -182,10 +182,10 @@ impl Linear {
         let mut window = Window { is_apart: false, from: [0.0, 1.0], to: [1.0; 2] };
         let mut d = [[[0.0f32; 2]; 2]; 3];
         let mut is_partly = false;
-        for k in 0..3 {
-            d[k][0] = [o.hi0[k] - self.lo0[k], o.hi1[k] - self.lo1[k]];
-            d[k][1] = [self.hi0[k] - o.lo0[k], self.hi1[k] - o.lo1[k]];
-            for [d0, d1] in d[k] {
+        for (k, both) in d.iter_mut().enumerate() {
+            both[0] = [o.hi0[k] - self.lo0[k], o.hi1[k] - self.lo1[k]];
+            both[1] = [self.hi0[k] - o.lo0[k], self.hi1[k] - o.lo1[k]];
+            for [d0, d1] in *both {
                 let (before, after) = (d0 < 0.0, d1 < 0.0);
                 window.is_apart |= before & after;
                 is_partly |= before | after;

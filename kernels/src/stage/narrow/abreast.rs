@@ -264,10 +264,10 @@ impl Line {
     fn get<L: Lane>(&self, lane: &L, place: u32) -> Single {
         let get = |k: u32| lane.get(self.words, self.word(k, place)).map(f32::from_bits);
         let mut w = [[Vec3([0.0; 3]); 2]; 4];
-        for k in 0..4 {
+        for (k, ends) in w.iter_mut().enumerate() {
             let ([x, y], [z, s]) = (get(3 * k as u32), get(3 * k as u32 + 1));
             let [t, u] = get(3 * k as u32 + 2);
-            w[k] = [Vec3([x, y, z]), Vec3([s, t, u])];
+            *ends = [Vec3([x, y, z]), Vec3([s, t, u])];
         }
         let ([over, under], [slack, time_tolerance]) = (get(LIMITS), get(LIMITS + 1));
         let ([known, _], [at, stride]) = (get(LIMITS + 2), get(LIMITS + 3));

@@ -47,14 +47,14 @@ pub fn separate<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
         // The normal does not change: it is computed once, and needs no registers.
         let put = |normal: Normal<f64>| {
             let numbers = normal.numbers();
-            for k in 0..NUMBERS {
-                lane.put(normals, k as u32 * lanes + lane.lane(), numbers[k].to_bits());
+            for (k, number) in numbers.into_iter().enumerate() {
+                lane.put(normals, k as u32 * lanes + lane.lane(), number.to_bits());
             }
         };
         let normal = || {
             let mut numbers = [0.0; NUMBERS];
-            for k in 0..NUMBERS {
-                numbers[k] = f64::from_bits(lane.get(normals, k as u32 * lanes + lane.lane()));
+            for (k, number) in numbers.iter_mut().enumerate() {
+                *number = f64::from_bits(lane.get(normals, k as u32 * lanes + lane.lane()));
             }
             Normal::of_numbers(numbers)
         };
