@@ -214,10 +214,20 @@ impl<const LANES: u32> Block for Gpu<LANES> {
         let lane = self.lane.lane;
         sync_warp();
         // A lane each.
+        let mut start = 0;
         if lane < 2 {
             let (counter, count) =
                 if lane == 0 { (counters[0], counts[0]) } else { (counters[1], counts[1]) };
-            let start = if count > 0 { self.lane.fetch_add(counter, 0, count) } else { 0 };
+            if count > 0 {
+                start = self.lane.fetch_add(counter, 0, count);
+            }
+        }
+        if Self::ONE_WARP {
+            sync_warp();
+            let [low, high] = [start as u32, (start >> 32) as u32];
+            return [0, 1].map(|of| u64::from(shuffle(low, of)) | u64::from(shuffle(high, of)) << 32);
+        }
+        if lane < 2 {
             store_shared64(scratch_address(BROADCAST + 8 * lane), start);
         }
         sync_threads();
