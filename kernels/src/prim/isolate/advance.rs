@@ -83,7 +83,7 @@ pub struct Progress<S> {
     pub stride: S,
     /// Steps that were taken.
     pub steps: u32,
-    /// [`STEP`] or [`TURN`]; from [`LOOK`] on, looks ahead.
+    /// `STEP` or `TURN`; from `LOOK` on, looks ahead.
     pub next: u32,
 }
 
