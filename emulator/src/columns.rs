@@ -42,25 +42,25 @@ impl Columns {
         let all = strips
             .iter()
             .enumerate()
-            .fold(0, |all, (i, strip)| all | at_once::<M>(strip, other) << (i * WIDTH));
+            .fold(0, |all, (i, strip)| all | pairs::<M>(strip, other) << (i * WIDTH));
         // Behind the last one lies what is left of others.
         all & ((1u64 << self.len) - 1) as u32
     }
 }
 
 #[inline(always)]
-fn at_once<M: PairTest>(strip: &[[u32; WIDTH]; MOST], other: &M::Item) -> u32 {
+fn pairs<M: PairTest>(strip: &[[u32; WIDTH]; MOST], other: &M::Item) -> u32 {
     #[cfg(target_arch = "x86_64")]
     if is_x86_feature_detected!("avx2") {
         // SAFETY: the machine has the features that the function is compiled for.
-        return unsafe { at_once_avx2::<M>(strip, other) };
+        return unsafe { pairs_avx2::<M>(strip, other) };
     }
     each::<M>(strip, other)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn at_once_avx2<M: PairTest>(strip: &[[u32; WIDTH]; MOST], other: &M::Item) -> u32 {
+fn pairs_avx2<M: PairTest>(strip: &[[u32; WIDTH]; MOST], other: &M::Item) -> u32 {
     each::<M>(strip, other)
 }
 
