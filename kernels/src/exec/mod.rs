@@ -150,7 +150,7 @@ pub trait RowMap {
 /// at once, in a loop that its compiler can vectorize: so no branch matters, and everything that
 /// the test calls is inlined.
 pub trait PairTest {
-    /// What is tested: whole words of four bytes, at most 16.
+    /// The type of both: whole words of four bytes, at most 16.
     type Item: Pod;
     /// The test. To be `#[inline(always)]`.
     fn test(a: &Self::Item, b: &Self::Item) -> bool;

@@ -37,9 +37,9 @@ impl End {
         let sides = |[x, y]: Sides| of(x) + of(y);
         (sides(self.p) + sides(self.q)) + of(self.way)
     }
-    /// By how much the first triangle is above the second one. And by how much the corners around a
-    /// common first one are apart, if that is its height: the first triangle's others are above
-    /// it, or the second one's below it if that is less.
+    /// The height of the first triangle above the second one. Also the height by which the corners
+    /// around a common first corner are apart: the first triangle's others above it, or the second
+    /// one's below it if that is less.
     #[inline(always)]
     fn apart(&self, n: Vec3<f32>) -> (f32, f32) {
         let [b, c] = self.p.map(|side| n.dot(side));
@@ -69,7 +69,7 @@ struct Pair {
 }
 
 impl Pair {
-    /// What is apart by more than this as computed is apart, or farther apart than the gap.
+    /// Triangles whose computed height is more than this are apart, or farther apart than the gap.
     ///
     /// The height of a corner above the first one of its triangle errs by four roundings of
     /// `sum |n_k| |x_k|`: those of the difference `x`, of the product and of two sums. (A difference
@@ -134,8 +134,9 @@ pub fn parted_allowing<R: Real>(
     pair.parts(centroids) | pair.parts(normal)
 }
 
-/// Of two vectors the one whose line is nearer to the direction `to`, turned to that side; the sum
-/// of both turned ones if they are equally near. About: lengths are sums of components.
+/// The one of two vectors whose line is nearer to the direction `to`, turned to that side. If both
+/// are equally near, the sum of both, each turned. Nearness is approximate: lengths are sums of
+/// components.
 #[inline(always)]
 fn nearer(n: Vec3<f32>, m: Vec3<f32>, to: Vec3<f32>) -> Vec3<f32> {
     let (along_n, along_m) = (n.dot(to), m.dot(to));

@@ -137,8 +137,8 @@ fn depth(a: &Linear, b: &Linear) -> f64 {
     times.into_iter().map(least).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// The answer is that of real arithmetic but for pairs within a hair of touching; it does not depend on the order. If
-/// products of differences underflow or overflow, pairs that never meet may be left in.
+/// The answer is that of real arithmetic, except for pairs within a hair of touching. It does not depend on the order.
+/// If products of differences underflow or overflow, pairs that never meet may be left in.
 #[test]
 fn boxes_that_never_meet_are_told_apart() {
     let mut rng = Rng::new(22);

@@ -124,7 +124,7 @@ impl<S: Grid> Progress<S> {
     /// until the end, or the hull may be within it.
     ///
     /// # Errors
-    /// What the second part continues with.
+    /// The state that the second part continues with.
     #[inline(always)]
     pub fn fixed<const N: usize>(
         &mut self,
@@ -245,7 +245,7 @@ pub struct Ahead<S, const N: usize> {
     now: Facing<S, N>,
     /// Until then the fixed plane proves the distance.
     next: S,
-    /// What is to be done: [`LATER`], or as [`Progress::next`].
+    /// The next thing to do: [`LATER`], or as [`Progress::next`].
     kind: u32,
     /// Whether the distance is reached at the begin, but for the slack.
     is_near: bool,

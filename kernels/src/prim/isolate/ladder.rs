@@ -113,9 +113,9 @@ pub fn isolated_last<const N: usize>(pair: &Pair<f64, N>, p: &Params) -> Result<
     isolated_from(pair, p, true).map_err(|from| from > 0.0)
 }
 
-/// What isolation in f64 leaves, of a vertex and a face: touching at the start, unless the features
-/// are known to be apart there, and flat motion. By value and out of line: few pairs come here, and
-/// the others keep their registers.
+/// Touching at the start, unless the features are known to be apart there, and flat motion: for a
+/// vertex and a face that isolation in f64 leaves. Arguments are values and the code is out of
+/// line: few pairs come here, and the others keep their registers.
 #[inline(never)]
 pub fn vf_settled<R: Real>(v: Moving<R>, f: [Moving<R>; 3], apart: bool, p: Params) -> Option<Verdict> {
     settled(&Face::new(v, f, &p), || !apart && vf_touch(v, f), false, &p).ok()
@@ -127,8 +127,8 @@ pub fn ee_settled<R: Real>(a: [Moving<R>; 2], b: [Moving<R>; 2], apart: bool, p:
     settled(&Edges::new(a, b, &p), || !apart && ee_touch(a, b), false, &p).ok()
 }
 
-/// What a slice leaves open from some time on, of a vertex and a face: nearness, then a search. By
-/// value and out of line, as [`vf_settled`].
+/// Nearness, then a search, for a vertex and a face that a slice leaves open from some time on.
+/// Values and out of line, as in [`vf_settled`].
 #[inline(never)]
 pub fn vf_searched<R: Real>(v: Moving<R>, f: [Moving<R>; 3], from: f64, p: Params) -> Verdict {
     let search = |known| searched(inclusion::Face::<f64>::new(v, f, &p), known, &p);
@@ -312,7 +312,7 @@ pub fn settled<const N: usize>(
 }
 
 /// The rungs behind the slices, given the first that is not apart, and the time before which no
-/// verdict of the pair begins. `open` decides
+/// verdict of the pair begins. `open` decides a slice that is open from some time on.
 #[inline(always)]
 pub fn decided(first: Slice, begin: f64, open: impl FnOnce(f64) -> Verdict, p: &Params) -> Verdict {
     let verdict = match first {

@@ -22,7 +22,7 @@ fn separation<S: Grid>(pair: &Pair<S, 4>, p: &Params) -> Distance<S> {
 }
 
 /// In f32: separated, or when first within the separation, if that is known as well as the
-/// tolerance demands. Of both kinds of pairs, so that lanes take them side by side.
+/// tolerance demands. One form for both kinds of pairs, so that lanes take them side by side.
 #[derive(Clone, Copy, Debug)]
 pub struct Single {
     /// The pair.
@@ -58,7 +58,7 @@ impl Single {
     /// The first part of a step, see [`Progress::fixed`].
     ///
     /// # Errors
-    /// What the second part continues with.
+    /// The state that the second part continues with.
     #[inline(always)]
     pub fn fixed(&mut self, p: &Params) -> Result<Advanced<f32>, Ahead<f32, 4>> {
         self.progress.fixed(&self.hull, &self.limits(p))

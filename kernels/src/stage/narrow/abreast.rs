@@ -63,7 +63,7 @@ pub fn abreast<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
     let count_vf = args.vf.pairs.listed(block);
     let count = count_vf as u64 + args.ee.pairs.listed(block) as u64;
     let mut line = Line::new(block);
-    // Of this block: pairs, and those that were taken up.
+    // The pairs of this block, and how many of them were taken up.
     let (groups, rest) = (count / GROUP, count % GROUP);
     let own_groups = (groups + blocks - 1 - number) / blocks;
     let own = own_groups * GROUP + if groups % blocks == number { rest } else { 0 };

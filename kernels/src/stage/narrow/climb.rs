@@ -139,7 +139,7 @@ fn unless_later<R: Real, S: Grid, L: Lane, const N: usize>(
     test(pair)
 }
 
-/// What a rung finds.
+/// The result of a rung for a pair.
 #[derive(Clone, Copy)]
 enum Tested {
     /// Decided.
@@ -160,9 +160,9 @@ impl From<Option<Verdict>> for Tested {
     }
 }
 
-/// What is done with the pairs of a kind that isolation leaves: they are counted, and those that
-/// ask for it are settled. In a phase of its own, which reads a pair anew: such pairs are few, and
-/// the others keep their registers.
+/// How the pairs of a kind are treated that isolation leaves. All are counted. Those that ask for
+/// it are settled, in a phase that reads a pair again: they are few, and the others keep their
+/// registers.
 struct Settle<F> {
     count: Counter,
     settle: F,
@@ -181,8 +181,8 @@ struct Tiles {
 
 /// Deals pairs to blocks in tiles: those of vertices and faces, then those of edges, a block's
 /// tiles a grid apart. A tile has as many pairs as a block has lanes. If `spread`, it may have
-/// fewer, so that a short list is spread over the grid and each block has a tile at most. Few lanes of a warp
-/// then wait for each other.
+/// fewer: a short list is spread over the grid, and each block has a tile at most. Then few lanes
+/// of a warp wait for each other.
 #[inline(always)]
 fn dealt<R: Real, B: Block>(block: &B, args: &RungArgs<R>, spread: bool) -> [Tiles; 2] {
     let (block_at, blocks, lanes) = (block.block(), block.blocks(), block.lanes());

@@ -22,7 +22,7 @@
 //!          behind the horizon.
 //!          A pair that never comes within the gap may be listed or not, as its owners are parted.
 //! Room     vf, ee: counted past the end, grown, run again.
-//! Departs  the paper runs all 15 tests for every pair. Of the pairs of cloth in motion half own a
+//! Departs  the paper runs all 15 tests for every pair. Half of the pairs of cloth in motion own a
 //!          test, five each on average; directions leave 0.44 of those.
 //!          Owners are the representative triangles of Curtis, Tamstorf, Manocha, "Fast collision
 //!          detection for deformable models using representative-triangles", 2008.

@@ -11,8 +11,8 @@
 //!          One lane decides a slice that is left open: by nearness, then by a search of boxes. A
 //!          pair whose iterations run out is listed.
 //! Room     hits: counted past the end, grown, run again.
-//! Cost     about 3,000 operations of f64 a lane. What a slice leaves open, a rare case, is read
-//!          again by one lane; its search costs 1,200 operations a box, and its stack of boxes is
+//! Cost     about 3,000 operations of f64 a lane. One lane reads a pair again that a slice leaves
+//!          open, which is rare. Its search costs 1,200 operations a box, and its stack of boxes is
 //!          local memory, 3 KB.
 
 use super::climb::emit;
