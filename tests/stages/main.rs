@@ -8,4 +8,5 @@ mod queue;
 mod refit;
 mod repeat;
 mod room;
+mod settle;
 mod tiles;

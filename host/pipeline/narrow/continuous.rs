@@ -65,9 +65,9 @@ pub struct ContinuousNarrow {
     pub ee_hits: List<Hit>,
     /// Rungs of a certified solver.
     rungs: Rungs,
-    /// Counters: hits that are not certain, those whose iterations ran out, those with both, and
-    /// those too large for the tolerance.
-    counters: [Counter; 4],
+    /// Counters: pairs that isolation leaves; hits that are not certain, those whose iterations ran
+    /// out, those with both, and those too large for the tolerance.
+    counters: [Counter; 6],
     /// The smallest tolerance above 0, if pairs have several.
     finest: Option<f64>,
     /// Whether pairs may be too large for the tolerance: see [`BelowPrecision`].
@@ -125,6 +125,8 @@ impl ContinuousNarrow {
             ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, capacities.hits[1])?,
             rungs: Rungs::new(device, solver.certified(), capacities.left)?,
             counters: [
+                counter::VF_OPEN,
+                counter::EE_OPEN,
                 counter::UNDECIDED,
                 counter::ENDED,
                 counter::ENDED_UNDECIDED,

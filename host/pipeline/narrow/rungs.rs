@@ -19,7 +19,8 @@ enum Rung {
     Isolate32,
     /// Isolation of roots in f64; touching at the start, and flat motion.
     Isolate64,
-    /// Touching at the start, directions, nearness: what f32 leaves, if there is no f64.
+    /// Touching at the start, and flat motion. If there is no f64, all that f32 leaves, by directions
+    /// and nearness too.
     Settle,
     /// The time window in slices.
     Slice,
@@ -53,6 +54,10 @@ const LEFT: [[(&str, &str, Counter); 2]; 2] = [
     ],
 ];
 
+/// The lists of pairs to settle: a name for errors, and the counter.
+const ASKED: [(&str, Counter); 2] =
+    [("vertex/face pairs to settle", counter::VF_ASKED), ("edge/edge pairs to settle", counter::EE_ASKED)];
+
 impl Rung {
     /// Returns which of these lists its undecided pairs go to.
     fn left(self) -> usize {
@@ -71,6 +76,9 @@ pub struct Rungs {
     left: Vec<[List<Pair>; 2]>,
     /// Index into [`LEFT`] of each.
     names: Vec<usize>,
+    /// Pairs that a long list in f64 leaves to be settled in a launch of their own; none without
+    /// f64. They have no room, and there is no launch, until such a list was seen.
+    asked: Option<[List<Pair>; 2]>,
     /// Tolerances of bodies; empty if all pairs have the same.
     tolerances: Buffer<BodyTolerance>,
     /// The values in `tolerances`.
@@ -92,9 +100,14 @@ impl Rungs {
             .iter()
             .map(|&at| Ok([list(LEFT[at][0], capacity[0])?, list(LEFT[at][1], capacity[1])?]))
             .collect::<Result<_, Error>>()?;
+        let asked = || {
+            let [vf, ee] = ASKED;
+            Ok::<_, Error>([List::new(device, vf.0, vf.1, 0)?, List::new(device, ee.0, ee.1, 0)?])
+        };
+        let asked = rungs.contains(&Rung::Isolate64).then(asked).transpose()?;
         let tolerances = device.of(purpose::TOLERANCES).buffer(0)?;
         let certified = certified.copied().unwrap_or_default();
-        Ok(Rungs { certified, rungs, left, names, tolerances, held: Vec::new() })
+        Ok(Rungs { certified, rungs, left, names, asked, tolerances, held: Vec::new() })
     }
 
     /// Sets the numbers of another solver of the same precision, and the tolerances of bodies;
@@ -123,7 +136,8 @@ impl Rungs {
 
     /// Returns the lists that the rungs fill.
     pub fn lists(&mut self) -> impl Iterator<Item = &mut dyn GrowableOutput> {
-        self.left.iter_mut().flatten().map(|list| list as &mut dyn GrowableOutput)
+        let asked = self.asked.iter_mut().flatten();
+        self.left.iter_mut().flatten().chain(asked).map(|list| list as &mut dyn GrowableOutput)
     }
 
     /// Returns the lists, with names.
@@ -145,10 +159,34 @@ impl Rungs {
         (edges, sample): (Span<[u32; 2]>, bool),
         (first, hits, earliest): ([&List<Pair>; 2], [&List<Hit>; 2], Span<u64>),
     ) -> Result<(), Error> {
-        let listed = |pairs: &List<Pair>, hits: &List<Hit>, left: Option<&List<Pair>>| Listed {
-            pairs: pairs.output(given.counters),
-            hits: hits.output(given.counters),
-            left: left.map_or(Output::EMPTY, |list| list.output(given.counters)),
+        let output =
+            |list: Option<&List<Pair>>| list.map_or(Output::EMPTY, |list| list.output(given.counters));
+        let asked = self.asked.as_ref().map(|lists| lists.each_ref()).filter(|_| !sample);
+        let run = |rung, pairs: [&List<Pair>; 2], left: Option<[&List<Pair>; 2]>| {
+            let listed = |kind: usize| Listed {
+                pairs: pairs[kind].output(given.counters),
+                hits: hits[kind].output(given.counters),
+                left: output(left.map(|lists| lists[kind])),
+            };
+            let narrow = self.certified.precision == CertifiedPrecision::F32;
+            let everything = narrow || rung == Rung::Isolate64;
+            let args = RungArgs {
+                frames: given.frames,
+                faces: given.faces,
+                edges,
+                vf: listed(0),
+                ee: listed(1),
+                vf_asked: output(asked.map(|[vf, _]| vf)),
+                ee_asked: output(asked.map(|[_, ee]| ee)),
+                earliest,
+                counters: given.counters,
+                tolerances: self.tolerances.span(),
+                params: self.certified.params(),
+                flags: RungFlags::EVERYTHING.when(everything) | RungFlags::DEFERS.when(asked.is_some()),
+                pad: 0,
+            };
+            let capacity = pairs[0].capacity() + pairs[1].capacity();
+            start::<R>(rung, given.device, capacity, &args)
         };
         let mut pairs = first;
         for (at, &rung) in self.rungs.iter().enumerate() {
@@ -156,23 +194,12 @@ impl Rungs {
                 break;
             }
             let left = self.left.get(at).map(|lists| lists.each_ref());
-            let narrow = self.certified.precision == CertifiedPrecision::F32;
-            let everything = narrow || rung == Rung::Isolate64;
-            let args = RungArgs {
-                frames: given.frames,
-                faces: given.faces,
-                edges,
-                vf: listed(pairs[0], hits[0], left.map(|[vf, _]| vf)),
-                ee: listed(pairs[1], hits[1], left.map(|[_, ee]| ee)),
-                earliest,
-                counters: given.counters,
-                tolerances: self.tolerances.span(),
-                params: self.certified.params(),
-                flags: RungFlags::EVERYTHING.when(everything),
-                pad: 0,
-            };
-            let capacity = pairs[0].capacity() + pairs[1].capacity();
-            start::<R>(rung, given.device, capacity, &args)?;
+            run(rung, pairs, left)?;
+            if let (Rung::Isolate64, Some([vf, ee])) = (rung, asked)
+                && vf.capacity() + ee.capacity() > 0
+            {
+                run(Rung::Settle, [vf, ee], left)?;
+            }
             pairs = left.unwrap_or(pairs);
         }
         Ok(())

@@ -108,6 +108,10 @@ counters! { 0;
     VF_OPEN,
     /// Edge/edge pairs that isolation leaves.
     EE_OPEN,
+    /// Vertex/face pairs that a long list leaves to be settled.
+    VF_ASKED,
+    /// Edge/edge pairs that a long list leaves to be settled.
+    EE_ASKED,
     /// Vertex/face pairs that are cut into slices.
     VF_HARD,
     /// Edge/edge pairs that are cut into slices.

@@ -97,7 +97,10 @@ flags! {
     }
     /// Flags of a rung: [`RungArgs`](super::RungArgs).
     RungFlags {
-        /// `narrow_isolate` accepts a contact with any bounds of its time.
+        /// `narrow_isolate` accepts a contact with any bounds of its time; `narrow_settle` leaves no
+        /// pair.
         EVERYTHING,
+        /// `narrow_isolate` in f64 lists the pairs to settle, if its list is long.
+        DEFERS,
     }
 }

@@ -162,6 +162,10 @@ arguments! {
         vf: Listed,
         /// Edge/edge pairs.
         ee: Listed,
+        /// Out: vertex/face pairs to settle, from a long list in f64.
+        vf_asked: Output<Pair>,
+        /// Out: edge/edge pairs to settle.
+        ee_asked: Output<Pair>,
         /// Out: the least toi so far, the words of [`super::earliest`]; or empty.
         earliest: Span<u64>,
         /// Counters.

@@ -4,6 +4,8 @@
 //!          rest (or one of them over all), then the slices of [`super::slice`] over the rest of
 //!          that. If f32 is all, [`settle`] over what it leaves. A separation has rungs of its own:
 //!          [`super::abreast`], then [`super::separate`].
+//!          If f64 has a long list, it settles no pair: [`settle`] does, before the slices, in full
+//!          warps.
 //!          A lane a pair, both kinds in one launch. A block takes tiles of one kind; a grid of any
 //!          size strides. In f64 it is as many blocks of one warp as run at once: few pairs are
 //!          left, and they are spread over all of them, 16 lanes of a warp at least.
@@ -17,14 +19,14 @@
 //!          A pair is skipped if none of its verdicts could begin before a known time
 //!          ([`Pair::not_before`](isolate::Pair::not_before)).
 //!          So the result is the same in any order.
-//! Room     hits, left: counted past the end, grown, run again.
+//! Room     hits, left, asked: counted past the end, grown, run again.
 //! Cost     8 B pair, 12 B indices, 128 B positions (gathered). Isolation: about 1,100 operations
 //!          for a pair with a root, as many in f64. There instructions are few, and waiting for
 //!          their code and for each other is the time.
 //!          Settling: some 30 exact signs for pairs that may touch at the start.
 
 use super::{edge_edge, lower, of_edge_edge, of_vertex_face, vertex_face};
-use crate::abi::{Counter, Hit, Listed, Pair, RungArgs, RungFlags, counter, earliest};
+use crate::abi::{Counter, Hit, Listed, Output, Pair, RungArgs, RungFlags, counter, earliest};
 use crate::exec::{Block, Lane, Slot};
 use crate::math::Real;
 use crate::prim::inclusion::{Grid, Params, Verdict};
@@ -65,8 +67,11 @@ pub fn isolate_and_settle<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) 
         (of_edge_edge(lane, args, pair), edge_edge(lane, &args.frames, args.edges, pair))
     };
     let [vf_tiles, ee_tiles] = dealt(block, args, true);
+    let is_long = vf_tiles.count as u64 + ee_tiles.count as u64 > LONG;
+    let is_deferred = is_long && args.flags.has(RungFlags::DEFERS);
     let open = Settle {
         count: counter::VF_OPEN,
+        asked: is_deferred.then_some(args.vf_asked),
         settle: |lane: &B::Lane, pair, apart| {
             let (p, (v, f)) = vf(lane, pair);
             vf_settled(v, f, apart, p)
@@ -79,6 +84,7 @@ pub fn isolate_and_settle<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) 
     });
     let open = Settle {
         count: counter::EE_OPEN,
+        asked: is_deferred.then_some(args.ee_asked),
         settle: |lane: &B::Lane, pair, apart| {
             let (p, [x, y]) = ee(lane, pair);
             ee_settled(x, y, apart, p)
@@ -100,9 +106,11 @@ fn in_double<const N: usize>(pair: &isolate::Pair<f64, N>, p: &Params) -> Tested
     }
 }
 
-/// All that isolation in f32 leaves, if there is no other rung: touching at the start, directions,
-/// nearness.
+/// Touching at the start, and flat motion: for pairs that f64 asks for. With
+/// [`RungFlags::EVERYTHING`] all that isolation in f32 leaves, if there is no other rung: also
+/// directions, and nearness.
 pub fn settle<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
+    let all = args.flags.has(RungFlags::EVERYTHING);
     rung(
         block,
         args,
@@ -110,13 +118,13 @@ pub fn settle<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
             let (p, (v, f)) =
                 (of_vertex_face(lane, args, pair), vertex_face(lane, &args.frames, args.faces, pair));
             let pair = Face::<f64>::new(v, f, &p);
-            unless_later(lane, args, &pair, |pair| settled(pair, || vf_touch(v, f), true, &p).ok().into())
+            unless_later(lane, args, &pair, |pair| settled(pair, || vf_touch(v, f), all, &p).ok().into())
         },
         |lane, pair| {
             let (p, [x, y]) =
                 (of_edge_edge(lane, args, pair), edge_edge(lane, &args.frames, args.edges, pair));
             let pair = Edges::<f64>::new(x, y, &p);
-            unless_later(lane, args, &pair, |pair| settled(pair, || ee_touch(x, y), true, &p).ok().into())
+            unless_later(lane, args, &pair, |pair| settled(pair, || ee_touch(x, y), all, &p).ok().into())
         },
     );
 }
@@ -162,9 +170,10 @@ impl From<Option<Verdict>> for Tested {
 
 /// How the pairs of a kind are treated that isolation leaves. All are counted. Those that ask for
 /// it are settled, in a phase that reads a pair again: they are few, and the others keep their
-/// registers.
+/// registers. Or they are listed in `asked`, for a launch of their own.
 struct Settle<F> {
     count: Counter,
+    asked: Option<Output<Pair>>,
     settle: F,
 }
 
@@ -199,6 +208,12 @@ fn dealt<R: Real, B: Block>(block: &B, args: &RungArgs<R>, spread: bool) -> [Til
 /// costs more than they save (measured: `benches/NOTES.md`).
 const FEWEST: u32 = 16;
 
+/// More pairs than this are a long list. As many run at once on a GPU of 128 processors, so each
+/// warp takes one tile of a shorter list. A warp waits for its slowest lane, and pairs settle in
+/// very different times. At rest 67,366 pairs settled in 600 us in this launch, and in 170 us in
+/// their own (measured: `benches/NOTES.md`). The number decides where a pair is settled, never how.
+const LONG: u64 = 1 << 15;
+
 /// The fate of a pair: nothing, [`LISTED`] or [`LEFT`]. Both are counted in one word.
 const LISTED: u32 = 1;
 const LEFT: u32 = 1 << 16;
@@ -232,39 +247,42 @@ fn each<R: Real, B: Block>(
     let mut hits = block.slot(Hit::default());
     let mut wishes = block.slot(0u32);
     let mut places = block.slot(0u32);
-    let mut asked = block.slot(0u32);
+    let mut asks = block.slot(0u32);
     let mut opened = block.slot(0u32);
+    let is_deferred = open.as_ref().is_some_and(|open| open.asked.is_some());
     let mut base = first * width;
     while base < count {
         block.phase(|lane| {
             let i = base + lane.lane();
-            let (mut wish, mut asks) = (0, 0);
+            let (mut wish, mut is_open, mut ask) = (0, false, 0);
             if lane.lane() < width && i < count {
                 let pair = of.pairs.get(lane, i);
                 let found = test(lane, pair);
                 let verdict = if let Tested::Verdict(verdict) = found { Some(verdict) } else { None };
                 *hits.of(lane) = Hit { a: pair.a, b: pair.b, verdict: verdict.unwrap_or_default() };
+                is_open = verdict.is_none();
+                if let Tested::Settle { apart } = found {
+                    ask = 1 + apart as u32;
+                }
                 wish = match verdict {
+                    None if ask > 0 && is_deferred => 0,
                     None => LEFT,
                     Some(verdict) if keep(lane, args, verdict) => LISTED,
                     Some(_) => 0,
                 };
-                if let Tested::Settle { apart } = found {
-                    asks = 1 + apart as u32;
-                }
             }
             *wishes.of(lane) = wish;
             *places.of(lane) = wish;
-            *asked.of(lane) = asks;
-            *opened.of(lane) = (wish == LEFT) as u32;
+            *asks.of(lane) = ask;
+            *opened.of(lane) = is_open as u32;
             lane.meet();
         });
-        if let Some(Settle { settle, .. }) = &open {
+        if let Some(Settle { settle, asked: None, .. }) = &open {
             block.phase(|lane| {
-                let asks = *asked.of(lane);
-                if asks > 0 {
+                let ask = *asks.of(lane);
+                if ask > 0 {
                     let hit = hits.of(lane);
-                    if let Some(verdict) = settle(lane, Pair { a: hit.a, b: hit.b }, asks > 1) {
+                    if let Some(verdict) = settle(lane, Pair { a: hit.a, b: hit.b }, ask > 1) {
                         hit.verdict = verdict;
                         let wish = if keep(lane, args, verdict) { LISTED } else { 0 };
                         *wishes.of(lane) = wish;
@@ -275,11 +293,13 @@ fn each<R: Real, B: Block>(
             });
         }
         let total = block.scan(&mut places);
-        if let Some(Settle { count, .. }) = &open {
+        let wanted = [(total & (LEFT - 1)) as u64, (total / LEFT) as u64];
+        let mut deferred = None;
+        if let Some(Settle { count, asked, .. }) = &open {
             let opened = block.scan(&mut opened);
             args.counters.add_once(block, *count, opened as u64);
+            deferred = asked.map(|asked| (asked, asked.reserve(block, opened as u64 - wanted[1])));
         }
-        let wanted = [(total & (LEFT - 1)) as u64, (total / LEFT) as u64];
         let [start, start_left] = block.reserve_both([of.hits.count(), of.left.count()], wanted);
         block.phase(|lane| {
             let (wish, before, hit) = (*wishes.of(lane), *places.of(lane), *hits.of(lane));
@@ -287,9 +307,16 @@ fn each<R: Real, B: Block>(
             if wish == LISTED {
                 of.hits.put(lane, place, hit);
             }
-            let place = start_left + (before / LEFT) as u64;
+            let left_before = (before / LEFT) as u64;
             if wish == LEFT {
-                of.left.put(lane, place, Pair { a: hit.a, b: hit.b });
+                of.left.put(lane, start_left + left_before, Pair { a: hit.a, b: hit.b });
+            }
+            if let Some((asked, first)) = deferred
+                && *asks.of(lane) > 0
+            {
+                // Those that isolation leaves are left, or ask.
+                let before = *opened.of(lane) as u64 - left_before;
+                asked.put(lane, first + before, Pair { a: hit.a, b: hit.b });
             }
             lane.meet();
         });
