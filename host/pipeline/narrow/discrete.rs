@@ -80,11 +80,12 @@ impl DiscreteNarrow {
             [first, .., last] => (first, Some(last)),
             [first] => (first, None),
         };
-        launch::striding::<R::Filter>(device, capacity, &candidates)?;
+        // A block that finds nothing costs its start: there are as many as run at once.
+        launch::at_once::<R::Filter>(device, capacity, &candidates)?;
         let left = args(first.output(given.counters), last);
-        let Some(last) = last else { return launch::striding::<R::Exact>(device, lanes(first), &left) };
-        launch::striding::<R::Wide>(device, lanes(first), &left)?;
-        launch::striding::<R::Exact>(device, lanes(last), &args(last.output(given.counters), None))
+        let Some(last) = last else { return launch::at_once::<R::Exact>(device, lanes(first), &left) };
+        launch::at_once::<R::Wide>(device, lanes(first), &left)?;
+        launch::at_once::<R::Exact>(device, lanes(last), &args(last.output(given.counters), None))
     }
 }
 

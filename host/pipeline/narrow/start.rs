@@ -66,12 +66,12 @@ impl StartCheck {
         for (at, list) in self.uncertain.iter().enumerate() {
             let args = args(left, Some(list));
             if at == 0 {
-                launch::striding::<R::StartFilter>(device, room, &args)
+                launch::at_once::<R::StartFilter>(device, room, &args)
             } else {
-                launch::striding::<R::StartWide>(device, room, &args)
+                launch::at_once::<R::StartWide>(device, room, &args)
             }?;
             (left, room) = (list.output(given.counters), lanes(list));
         }
-        launch::striding::<R::StartExact>(device, room, &args(left, None))
+        launch::at_once::<R::StartExact>(device, room, &args(left, None))
     }
 }

@@ -20,7 +20,9 @@ use crate::math::{Real, Vec3};
 use crate::prim::adjacent::{Shared, meets_beyond_shared};
 use crate::prim::tri_tri::{Certain, SIGNS, Signs, Wide, decided, meets, points_of_sign};
 
-/// Few pairs: so many that a block tests together, and no more blocks.
+/// Few pairs: at most so many. More have a lane a pair, and fill the machine.
+const FEW: u32 = 1 << 14;
+/// So many of few pairs a block tests together.
 const TOGETHER: u32 = 4;
 /// Lanes of one of few pairs: one a sign, and one idle.
 pub const LANES_A_PAIR: u32 = SIGNS.next_power_of_two();
@@ -32,7 +34,7 @@ const UNKNOWN: u32 = 3;
 /// Signs in f64, for pairs that f32 left uncertain.
 pub fn wide<F: Frame<f32>, B: Block>(block: &mut B, args: &DiscreteArgs<f32>) {
     let count = args.pairs.listed(block);
-    if are_few(block, args, count) {
+    if are_few(args, count) {
         return of_few::<f32, F, Wide, B>(block, args, count, |lane, pair, verdict| match verdict {
             Some(true) => args.contacts.push(lane, pair),
             Some(false) => {}
@@ -74,7 +76,7 @@ fn beyond(p: [Vec3<f32>; 3], q: [Vec3<f32>; 3], shared: Shared) -> Option<bool> 
 pub fn exact<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &DiscreteArgs<R>) {
     let count = args.pairs.listed(block);
     // `Certain` always answers; were it not to, the pair stays.
-    if are_few(block, args, count) {
+    if are_few(args, count) {
         return of_few::<R, F, Certain, B>(block, args, count, |lane, pair, verdict| {
             if verdict != Some(false) {
                 args.contacts.push(lane, pair);
@@ -88,8 +90,8 @@ pub fn exact<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &DiscreteArgs<
 }
 
 /// Whether there are so few pairs that each lane takes a sign. None of them may share vertices.
-fn are_few<R: Real, B: Block>(block: &B, args: &DiscreteArgs<R>, count: u32) -> bool {
-    !args.flags.has(DiscreteFlags::KEEP_ADJACENT) && count <= block.blocks() * TOGETHER
+fn are_few<R: Real>(args: &DiscreteArgs<R>, count: u32) -> bool {
+    !args.flags.has(DiscreteFlags::KEEP_ADJACENT) && count <= FEW
 }
 
 /// Few pairs: a lane computes one sign. One lane of each pair takes the verdict. It computes more
@@ -104,42 +106,46 @@ fn of_few<R: Real, F: Frame<R>, S: Signs<R>, B: Block>(
 ) {
     let lanes = block.lanes();
     let signs = block.shared::<u32>(TOGETHER * LANES_A_PAIR);
-    let base = (block.block() * TOGETHER).min(count);
-    let some = TOGETHER.min(count - base);
-    block.phase(|lane| {
-        let mut i = lane.lane();
-        while i < some * LANES_A_PAIR {
-            let which = i % LANES_A_PAIR;
-            if which < SIGNS {
-                let [p, q] = faces(lane, args, args.pairs.get(lane, base + i / LANES_A_PAIR));
-                let [a, b, c, d] = points_of_sign(p, q, which);
-                let at = |vertex| F::at(lane, &args.frames, vertex);
-                let sign = S::orient3d(at(a), at(b), at(c), at(d));
-                lane.put(signs, i, sign.map_or(UNKNOWN, |sign| (sign + 1) as u32));
+    let mut base = block.block() * TOGETHER;
+    while base < count {
+        let some = TOGETHER.min(count - base);
+        block.phase(|lane| {
+            let mut i = lane.lane();
+            while i < some * LANES_A_PAIR {
+                let which = i % LANES_A_PAIR;
+                if which < SIGNS {
+                    let [p, q] = faces(lane, args, args.pairs.get(lane, base + i / LANES_A_PAIR));
+                    let [a, b, c, d] = points_of_sign(p, q, which);
+                    let at = |vertex| F::at(lane, &args.frames, vertex);
+                    let sign = S::orient3d(at(a), at(b), at(c), at(d));
+                    lane.put(signs, i, sign.map_or(UNKNOWN, |sign| (sign + 1) as u32));
+                }
+                i += lanes;
             }
-            i += lanes;
-        }
-        lane.meet();
-    });
-    block.phase(|lane| {
-        let mut i = lane.lane();
-        while i < some {
-            let sign = |k: usize| lane.get(signs, i * LANES_A_PAIR + k as u32);
-            let all: [u32; SIGNS as usize] = core::array::from_fn(sign);
-            let pair = args.pairs.get(lane, base + i);
-            let known = if all.contains(&UNKNOWN) { None } else { decided(&all.map(|sign| sign as i32 - 1)) };
-            take(
-                lane,
-                pair,
-                known.or_else(|| {
-                    let [p, q] = faces(lane, args, pair).map(|face| corners::<R, F, _>(lane, args, face));
-                    one_by_one::<R, S>(p, q)
-                }),
-            );
-            i += lanes;
-        }
-        lane.meet();
-    });
+            lane.meet();
+        });
+        block.phase(|lane| {
+            let mut i = lane.lane();
+            while i < some {
+                let sign = |k: usize| lane.get(signs, i * LANES_A_PAIR + k as u32);
+                let all: [u32; SIGNS as usize] = core::array::from_fn(sign);
+                let pair = args.pairs.get(lane, base + i);
+                let known =
+                    if all.contains(&UNKNOWN) { None } else { decided(&all.map(|sign| sign as i32 - 1)) };
+                take(
+                    lane,
+                    pair,
+                    known.or_else(|| {
+                        let [p, q] = faces(lane, args, pair).map(|face| corners::<R, F, _>(lane, args, face));
+                        one_by_one::<R, S>(p, q)
+                    }),
+                );
+                i += lanes;
+            }
+            lane.meet();
+        });
+        base += block.blocks() * TOGETHER;
+    }
 }
 
 /// [`meets`], by value and out of line: few lanes come here.
