@@ -6,6 +6,8 @@ use crate::device::{Ahead, Buffer, Device, Kept, View};
 use crate::error::Error;
 use bytemuck::Pod;
 use nearmiss_kernels::abi::{Counter, Counters, Output, Span};
+use rayon::prelude::*;
+use xxhash_rust::xxh3::xxh3_64;
 
 /// A list in device memory, with a counter of its entries.
 pub struct List<T> {
@@ -145,6 +147,31 @@ pub trait GrowableOutput {
     /// [`Error::OutOfMemory`] if there is no memory, or the list would be longer than 32 bits can
     /// index.
     fn grow(&mut self, device: &Device, counters: &Counts) -> Result<bool, Error>;
+}
+
+/// A list between two steps, as two machines compare it.
+pub trait Comparable {
+    /// Returns a hash of the entries, whatever their order.
+    ///
+    /// # Errors
+    /// Device errors.
+    fn fingerprint(&self, counters: &Counts) -> Result<u64, Error>;
+}
+
+/// A list with a name, for comparing machines.
+pub type Named<'a> = (&'static str, &'a dyn Comparable);
+
+/// Returns a list with a name.
+pub fn named<'a>(name: &'static str, list: &'a dyn Comparable) -> Named<'a> {
+    (name, list)
+}
+
+impl<T: Pod + Ord + Send> Comparable for List<T> {
+    fn fingerprint(&self, counters: &Counts) -> Result<u64, Error> {
+        let mut entries = self.read(counters)?;
+        entries.par_sort_unstable();
+        Ok(xxh3_64(bytemuck::cast_slice(&entries)))
+    }
 }
 
 /// A counter without a list.

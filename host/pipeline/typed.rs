@@ -18,7 +18,7 @@ pub use found::{Found, Hits, Listed};
 pub use submit::{Submits, not_prepared};
 
 use super::broad::{CandidateSearch, Share};
-use super::list::List;
+use super::list::named;
 use super::placing::{Moved, Whereabouts};
 use super::precision::Precision;
 use super::wear::Wear;
@@ -28,13 +28,10 @@ use crate::error::Error;
 use crate::query::Query;
 use crate::scene::Body;
 use crate::stages::{Stage, Stages};
-use nearmiss_kernels::abi::Pair;
 use query::QueryMemory;
-use rayon::prelude::*;
 use scene::{BroadKey, SceneMemory};
 #[cfg(test)]
 use std::sync::Arc;
-use xxhash_rust::xxh3::xxh3_64;
 
 /// A step of a frame that fills lists; each reads the lists of the one before.
 #[derive(Clone, Copy)]
@@ -270,17 +267,11 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
     fn fingerprints(&self, query: usize) -> Result<Vec<(&'static str, u64)>, Error> {
         let own = &self.queries[query];
         let mut prints = self.broad(query).fingerprints()?;
-        let mut list = |name, list: &List<Pair>| -> Result<(), Error> {
-            let mut pairs = list.read(&own.last)?;
-            pairs.par_sort_unstable();
-            prints.push((name, xxh3_64(bytemuck::cast_slice(&pairs))));
-            Ok(())
-        };
-        list("traverse", &self.scene.pairs)?;
-        own.narrow
-            .between(&self.scene.features)
-            .into_iter()
-            .try_for_each(|(name, pairs)| list(name, pairs))?;
+        let mut lists = vec![named("traverse", &self.scene.pairs)];
+        lists.extend(own.narrow.between(&self.scene.features));
+        for (name, list) in lists {
+            prints.push((name, list.fingerprint(&own.last)?));
+        }
         Ok(prints)
     }
 

@@ -6,5 +6,6 @@ mod built;
 mod known;
 mod nearest;
 mod planted;
+mod proven;
 mod rung;
 mod turning;

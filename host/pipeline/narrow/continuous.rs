@@ -10,7 +10,7 @@ use crate::device::{Ahead, Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::below_precision::{self, BelowPrecision};
 use crate::pipeline::counts::Counts;
-use crate::pipeline::list::{GrowableOutput, List};
+use crate::pipeline::list::{GrowableOutput, List, Named, named};
 use crate::pipeline::order::{Order, Ordering, Unordered};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
@@ -330,7 +330,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
         }
     }
 
-    fn between<'a>(&'a self, features: &'a Features) -> Vec<(&'static str, &'a List<Pair>)> {
+    fn between<'a>(&'a self, features: &'a Features) -> Vec<Named<'a>> {
         if self.earliest.is_some() {
             // The test of a pair depends on the pairs found before it.
             return Vec::new();
@@ -338,7 +338,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
         let mut lists: Vec<_> = self.start.iter().flat_map(StartCheck::uncertain).collect();
         lists.extend(features.between());
         if let Some([vf, ee]) = &self.survivors {
-            lists.extend([("narrow: vf that may meet", vf), ("narrow: ee that may meet", ee)]);
+            lists.extend([named("narrow: vf that may meet", vf), named("narrow: ee that may meet", ee)]);
         }
         lists.extend(self.rungs.between());
         lists

@@ -6,7 +6,7 @@ use crate::device::{Ahead, Device};
 use crate::error::Error;
 use crate::pipeline::counts::Counts;
 use crate::pipeline::launch;
-use crate::pipeline::list::{GrowableOutput, List};
+use crate::pipeline::list::{GrowableOutput, List, Named, named};
 use crate::pipeline::order::{Order, Ordering, Unordered};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
@@ -54,8 +54,12 @@ impl DiscreteNarrow {
     }
 
     /// Returns the pairs that each filter left to the next, with names.
-    pub fn uncertain(&self) -> Vec<(&'static str, &List<Pair>)> {
-        ["narrow: uncertain", "narrow: uncertain in f64"].into_iter().zip(&self.uncertain).collect()
+    pub fn uncertain(&self) -> Vec<Named<'_>> {
+        ["narrow: uncertain", "narrow: uncertain in f64"]
+            .into_iter()
+            .zip(&self.uncertain)
+            .map(|(name, list)| named(name, list))
+            .collect()
     }
 
     /// Launches the one step: a floating-point test, or the exact test. The exact test has filters
@@ -107,7 +111,7 @@ impl<R: Precision> Narrow<R> for DiscreteNarrow {
         self.all_lists()
     }
 
-    fn between<'a>(&'a self, _: &'a Features) -> Vec<(&'static str, &'a List<Pair>)> {
+    fn between<'a>(&'a self, _: &'a Features) -> Vec<Named<'a>> {
         self.uncertain()
     }
 

@@ -6,12 +6,12 @@ use crate::device::{Ahead, Device};
 use crate::error::Error;
 use crate::pipeline::counts::Counts;
 use crate::pipeline::launch;
-use crate::pipeline::list::{GrowableOutput, List};
+use crate::pipeline::list::{GrowableOutput, List, Named};
 use crate::pipeline::order::Ordering;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::Listed;
 use crate::query::TriangleTest;
-use nearmiss_kernels::abi::{LeastArgs, NearestHit, Pair, Span, counter};
+use nearmiss_kernels::abi::{LeastArgs, NearestHit, Span, counter};
 
 /// A step of the phase.
 #[derive(Clone, Copy)]
@@ -93,7 +93,7 @@ impl<R: Precision> Narrow<R> for DistanceNarrow {
         }
     }
 
-    fn between<'a>(&'a self, _: &'a Features) -> Vec<(&'static str, &'a List<Pair>)> {
+    fn between<'a>(&'a self, _: &'a Features) -> Vec<Named<'a>> {
         self.meeting.uncertain()
     }
 

@@ -5,7 +5,7 @@ use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::counts::Counts;
 use crate::pipeline::layout::Layout;
-use crate::pipeline::list::List;
+use crate::pipeline::list::{List, Named, named};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::{launch, purpose};
 use nearmiss_kernels::abi::{Facet, FeaturesArgs, Pair, Span, counter};
@@ -74,9 +74,9 @@ impl Features {
     }
 
     /// Returns the lists, with names: for comparing machines.
-    pub fn between(&self) -> Vec<(&'static str, &List<Pair>)> {
+    pub fn between(&self) -> Vec<Named<'_>> {
         let [vf, ee] = &self.candidates;
-        vec![("narrow: vf", vf), ("narrow: ee", ee)]
+        vec![named("narrow: vf", vf), named("narrow: ee", ee)]
     }
 
     /// Launches the step by kernel `E`, for moving triangles or for those at one time. It lists

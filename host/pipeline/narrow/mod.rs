@@ -17,7 +17,7 @@ pub use features::Features;
 
 use super::counts::Counts;
 use super::layout::Layout;
-use super::list::{GrowableOutput, List};
+use super::list::{GrowableOutput, Named};
 use super::order::Ordering;
 use super::precision::Precision;
 use super::typed::Listed;
@@ -92,7 +92,7 @@ pub trait Narrow<R: Precision>: Send {
 
     /// Returns the lists between candidates and contacts, with names: for comparing machines. Lists
     /// that depend on the order of lanes are left out.
-    fn between<'a>(&'a self, features: &'a Features) -> Vec<(&'static str, &'a List<Pair>)>;
+    fn between<'a>(&'a self, features: &'a Features) -> Vec<Named<'a>>;
 
     /// Updates for new positions: the size of the bodies may matter.
     fn place(&mut self, _bodies: &[Body]) {}

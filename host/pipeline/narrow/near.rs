@@ -8,12 +8,12 @@ use crate::device::{Ahead, Device};
 use crate::error::Error;
 use crate::pipeline::counts::Counts;
 use crate::pipeline::launch;
-use crate::pipeline::list::{GrowableOutput, List};
+use crate::pipeline::list::{GrowableOutput, List, Named};
 use crate::pipeline::order::{Order, Ordering, Unordered};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
 use crate::query::Query;
-use nearmiss_kernels::abi::{BodyTolerance, Counter, NearArgs, NearHit, Pair, Span, counter};
+use nearmiss_kernels::abi::{BodyTolerance, Counter, NearArgs, NearHit, Span, counter};
 
 /// A step of the phase.
 #[derive(Clone, Copy)]
@@ -102,7 +102,7 @@ impl<R: Precision> Narrow<R> for NearNarrow {
         }
     }
 
-    fn between<'a>(&'a self, features: &'a Features) -> Vec<(&'static str, &'a List<Pair>)> {
+    fn between<'a>(&'a self, features: &'a Features) -> Vec<Named<'a>> {
         features.between()
     }
 

@@ -3,12 +3,13 @@
 use super::NarrowContext;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
-use crate::pipeline::list::{GrowableOutput, List};
+use crate::pipeline::list::{GrowableOutput, List, Named, named};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::{launch, purpose};
 use crate::query::{Certified, CertifiedPrecision};
+use bytemuck::Pod;
 use nearmiss_kernels::abi::{
-    BodyTolerance, Counter, Hit, Listed, Output, Pair, RungArgs, RungFlags, Span, counter,
+    Begun, BodyTolerance, Counter, Hit, Listed, Output, Pair, RungArgs, RungFlags, Span, counter,
 };
 use nearmiss_kernels::entry::Entry;
 
@@ -41,9 +42,11 @@ fn rungs(certified: &Certified) -> &'static [Rung] {
     }
 }
 
-/// The lists that rungs leave: a name for comparisons of machines, a name for errors, and the
-/// counter.
-const LEFT: [[(&str, &str, Counter); 2]; 2] = [
+/// Lists of both kinds: a name for comparisons of machines, a name for errors, and the counter.
+type OfKinds = [(&'static str, &'static str, Counter); 2];
+
+/// The lists that rungs leave.
+const LEFT: [OfKinds; 2] = [
     [
         ("narrow: vf for f64", "vertex/face pairs for f64", counter::VF_ESCALATED),
         ("narrow: ee for f64", "edge/edge pairs for f64", counter::EE_ESCALATED),
@@ -54,9 +57,11 @@ const LEFT: [[(&str, &str, Counter); 2]; 2] = [
     ],
 ];
 
-/// The lists of pairs to settle: a name for errors, and the counter.
-const ASKED: [(&str, Counter); 2] =
-    [("vertex/face pairs to settle", counter::VF_ASKED), ("edge/edge pairs to settle", counter::EE_ASKED)];
+/// The lists of pairs to settle. How many there are depends on the machine, so none is compared.
+const ASKED: OfKinds = [
+    ("", "vertex/face pairs to settle", counter::VF_ASKED),
+    ("", "edge/edge pairs to settle", counter::EE_ASKED),
+];
 
 impl Rung {
     /// Returns which of these lists its undecided pairs go to.
@@ -68,21 +73,44 @@ impl Rung {
     }
 }
 
+/// Pairs that a rung leaves: vertex/face, edge/edge.
+enum Left {
+    /// To isolation, or to slices.
+    Pairs([List<Pair>; 2]),
+    /// With a separation: with times that are proven.
+    Begun([List<Begun>; 2]),
+}
+
 /// The rungs of a certified solver, and the lists between them; empty for another solver.
 pub struct Rungs {
     certified: Certified,
     rungs: &'static [Rung],
-    /// Pairs that each rung except the last leaves: vertex/face, edge/edge.
-    left: Vec<[List<Pair>; 2]>,
+    /// Pairs that each rung except the last leaves.
+    left: Vec<Left>,
     /// Index into [`LEFT`] of each.
     names: Vec<usize>,
     /// Pairs that a long list in f64 leaves to be settled in a launch of their own; none without
     /// f64. They have no room, and there is no launch, until such a list was seen.
-    asked: Option<[List<Pair>; 2]>,
+    asked: Option<Left>,
     /// Tolerances of bodies; empty if all pairs have the same.
     tolerances: Buffer<BodyTolerance>,
     /// The values in `tolerances`.
     held: Vec<BodyTolerance>,
+}
+
+impl Left {
+    fn capacity(&self) -> usize {
+        match self {
+            Left::Pairs([vf, ee]) => vf.capacity() + ee.capacity(),
+            Left::Begun([vf, ee]) => vf.capacity() + ee.capacity(),
+        }
+    }
+}
+
+/// Allocates lists of both kinds.
+fn lists<T: Pod>(device: &Device, names: OfKinds, capacity: [usize; 2]) -> Result<[List<T>; 2], Error> {
+    let [(_, vf, vf_counter), (_, ee, ee_counter)] = names;
+    Ok([List::new(device, vf, vf_counter, capacity[0])?, List::new(device, ee, ee_counter, capacity[1])?])
 }
 
 impl Rungs {
@@ -93,17 +121,16 @@ impl Rungs {
     pub fn new(device: &Device, certified: Option<&Certified>, capacity: [usize; 2]) -> Result<Self, Error> {
         let rungs = certified.map_or(&[][..], rungs);
         let names: Vec<_> = rungs.iter().rev().skip(1).rev().map(|rung| rung.left()).collect();
-        let list = |(_, name, counter): (&str, &'static str, Counter), capacity| {
-            List::new(device, name, counter, capacity)
+        let is_apart = certified.is_some_and(Certified::is_apart);
+        let of = |at: usize| {
+            if is_apart {
+                lists(device, LEFT[at], capacity).map(Left::Begun)
+            } else {
+                lists(device, LEFT[at], capacity).map(Left::Pairs)
+            }
         };
-        let left = names
-            .iter()
-            .map(|&at| Ok([list(LEFT[at][0], capacity[0])?, list(LEFT[at][1], capacity[1])?]))
-            .collect::<Result<_, Error>>()?;
-        let asked = || {
-            let [vf, ee] = ASKED;
-            Ok::<_, Error>([List::new(device, vf.0, vf.1, 0)?, List::new(device, ee.0, ee.1, 0)?])
-        };
+        let left = names.iter().map(|&at| of(at)).collect::<Result<_, Error>>()?;
+        let asked = || lists(device, ASKED, [0, 0]).map(Left::Pairs);
         let asked = rungs.contains(&Rung::Isolate64).then(asked).transpose()?;
         let tolerances = device.of(purpose::TOLERANCES).buffer(0)?;
         let certified = certified.copied().unwrap_or_default();
@@ -136,16 +163,23 @@ impl Rungs {
 
     /// Returns the lists that the rungs fill.
     pub fn lists(&mut self) -> impl Iterator<Item = &mut dyn GrowableOutput> {
-        let asked = self.asked.iter_mut().flatten();
-        self.left.iter_mut().flatten().chain(asked).map(|list| list as &mut dyn GrowableOutput)
+        self.left.iter_mut().chain(&mut self.asked).flat_map(|left| -> [&mut dyn GrowableOutput; 2] {
+            match left {
+                Left::Pairs([vf, ee]) => [vf, ee],
+                Left::Begun([vf, ee]) => [vf, ee],
+            }
+        })
     }
 
     /// Returns the lists, with names.
-    pub fn between(&self) -> impl Iterator<Item = (&'static str, &List<Pair>)> {
-        self.names
-            .iter()
-            .zip(&self.left)
-            .flat_map(|(&at, [vf, ee])| [(LEFT[at][0].0, vf), (LEFT[at][1].0, ee)])
+    pub fn between(&self) -> impl Iterator<Item = Named<'_>> {
+        self.names.iter().zip(&self.left).flat_map(|(&at, left)| {
+            let [vf_name, ee_name] = LEFT[at].map(|(name, ..)| name);
+            match left {
+                Left::Pairs([vf, ee]) => [named(vf_name, vf), named(ee_name, ee)],
+                Left::Begun([vf, ee]) => [named(vf_name, vf), named(ee_name, ee)],
+            }
+        })
     }
 
     /// Launches the rungs, the first one over `first`. For a sample it launches only the rungs that
@@ -159,25 +193,43 @@ impl Rungs {
         (edges, sample): (Span<[u32; 2]>, bool),
         (first, hits, earliest): ([&List<Pair>; 2], [&List<Hit>; 2], Span<u64>),
     ) -> Result<(), Error> {
-        let output =
-            |list: Option<&List<Pair>>| list.map_or(Output::EMPTY, |list| list.output(given.counters));
-        let asked = self.asked.as_ref().map(|lists| lists.each_ref()).filter(|_| !sample);
-        let run = |rung, pairs: [&List<Pair>; 2], left: Option<[&List<Pair>; 2]>| {
-            let listed = |kind: usize| Listed {
-                pairs: pairs[kind].output(given.counters),
+        let listed = |before: Option<&Left>, left: Option<&Left>, kind: usize| {
+            let pairs = |of: &[List<Pair>; 2]| of[kind].output(given.counters);
+            let begun = |of: &[List<Begun>; 2]| of[kind].output(given.counters);
+            let mut listed = Listed {
+                pairs: first[kind].output(given.counters),
+                begun: Output::EMPTY,
                 hits: hits[kind].output(given.counters),
-                left: output(left.map(|lists| lists[kind])),
+                left: Output::EMPTY,
             };
+            match before {
+                Some(Left::Pairs(of)) => listed.pairs = pairs(of),
+                Some(Left::Begun(of)) => (listed.pairs, listed.begun) = (Output::EMPTY, begun(of)),
+                None => {}
+            }
+            match left {
+                Some(Left::Pairs(of)) => listed.left = pairs(of),
+                Some(Left::Begun(of)) => listed.begun = begun(of),
+                None => {}
+            }
+            listed
+        };
+        let asked = self.asked.as_ref().filter(|_| !sample);
+        let of_asked = |kind: usize| match asked {
+            Some(Left::Pairs(of)) => of[kind].output(given.counters),
+            _ => Output::EMPTY,
+        };
+        let run = |rung, before: Option<&Left>, left| {
             let narrow = self.certified.precision == CertifiedPrecision::F32;
             let everything = narrow || rung == Rung::Isolate64;
             let args = RungArgs {
                 frames: given.frames,
                 faces: given.faces,
                 edges,
-                vf: listed(0),
-                ee: listed(1),
-                vf_asked: output(asked.map(|[vf, _]| vf)),
-                ee_asked: output(asked.map(|[_, ee]| ee)),
+                vf: listed(before, left, 0),
+                ee: listed(before, left, 1),
+                vf_asked: of_asked(0),
+                ee_asked: of_asked(1),
                 earliest,
                 counters: given.counters,
                 tolerances: self.tolerances.span(),
@@ -185,22 +237,20 @@ impl Rungs {
                 flags: RungFlags::EVERYTHING.when(everything) | RungFlags::DEFERS.when(asked.is_some()),
                 pad: 0,
             };
-            let capacity = pairs[0].capacity() + pairs[1].capacity();
+            let capacity = before.map_or(first[0].capacity() + first[1].capacity(), Left::capacity);
             start::<R>(rung, given.device, capacity, &args)
         };
-        let mut pairs = first;
+        let mut before = None;
         for (at, &rung) in self.rungs.iter().enumerate() {
             if sample && !matches!(rung, Rung::Isolate32 | Rung::Isolate64) {
                 break;
             }
-            let left = self.left.get(at).map(|lists| lists.each_ref());
-            run(rung, pairs, left)?;
-            if let (Rung::Isolate64, Some([vf, ee])) = (rung, asked)
-                && vf.capacity() + ee.capacity() > 0
-            {
-                run(Rung::Settle, [vf, ee], left)?;
+            let left = self.left.get(at);
+            run(rung, before, left)?;
+            if rung == Rung::Isolate64 && asked.is_some_and(|asked| asked.capacity() > 0) {
+                run(Rung::Settle, asked, left)?;
             }
-            pairs = left.unwrap_or(pairs);
+            before = left;
         }
         Ok(())
     }

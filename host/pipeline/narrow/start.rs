@@ -6,7 +6,7 @@ use super::{NarrowContext, growable};
 use crate::device::Device;
 use crate::error::Error;
 use crate::pipeline::launch;
-use crate::pipeline::list::{GrowableOutput, List};
+use crate::pipeline::list::{GrowableOutput, List, Named, named};
 use crate::pipeline::precision::Precision;
 use nearmiss_kernels::abi::{Counter, DiscreteArgs, DiscreteFlags, Output, Pair, Span, counter};
 
@@ -40,10 +40,11 @@ impl StartCheck {
     }
 
     /// Returns the pairs that each filter left to the next, with names.
-    pub fn uncertain(&self) -> impl Iterator<Item = (&'static str, &List<Pair>)> {
+    pub fn uncertain(&self) -> impl Iterator<Item = Named<'_>> {
         ["narrow: uncertain at the start", "narrow: uncertain at the start in f64"]
             .into_iter()
             .zip(&self.uncertain)
+            .map(|(name, list)| named(name, list))
     }
 
     /// Launches the step over all candidates: filters with an error bound in f32 and in f64, and

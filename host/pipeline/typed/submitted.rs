@@ -3,8 +3,9 @@
 use super::*;
 use crate::device::emulator::{Emulator, Mode};
 use crate::pipeline::Layout;
+use crate::pipeline::list::List;
 use crate::samples;
-use nearmiss_kernels::abi::{Room, counter};
+use nearmiss_kernels::abi::{Pair, Room, counter};
 
 /// Returns a pipeline over a soup that has answered a frame, and its query.
 fn answered(device: &Device) -> (TypedPipeline<f32>, usize) {

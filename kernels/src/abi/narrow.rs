@@ -1,8 +1,8 @@
 //! Argument blocks of the last stage: from triangle pairs to contacts.
 
 use super::{
-    BodyTolerance, Counters, DiscreteFlags, Facet, Hit, NearHit, NearestHit, Output, Pair, Point, Positions,
-    RungFlags, Span,
+    Begun, BodyTolerance, Counters, DiscreteFlags, Facet, Hit, NearHit, NearestHit, Output, Pair, Point,
+    Positions, RungFlags, Span,
 };
 use crate::math::Real;
 use crate::prim::inclusion::Params;
@@ -142,8 +142,11 @@ arguments! {
     }
     /// Pairs of one kind for a rung, and its output lists.
     Listed {
-        /// Pairs.
+        /// Pairs; empty if `begun` has them.
         pairs: Output<Pair>,
+        /// With a separation: pairs with the time that f32 has proven. Out in f32, in in f64; empty
+        /// if f64 is alone.
+        begun: Output<Begun>,
         /// Out: contacts and undecided pairs; empty if only the earliest is wanted.
         hits: Output<Hit>,
         /// Out: pairs for the next rung; empty without one.

@@ -78,6 +78,17 @@ pub struct Pair {
 }
 const _: () = assert!(size_of::<Pair>() == 8);
 
+/// A pair of features that f32 leaves to f64, and a time that it has proven.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct Begun {
+    /// The pair.
+    pub pair: Pair,
+    /// The bits of a time in [0, 1], an f64: the pair is farther apart than the separation before it.
+    pub from: u64,
+}
+const _: () = assert!(size_of::<Begun>() == 16);
+
 /// A triangle as the narrow stage of moving features reads it, in one access of 32 bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C, align(16))]

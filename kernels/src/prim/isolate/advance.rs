@@ -10,7 +10,7 @@
 use super::hull::{Facing, Hull};
 use super::normal::Normal;
 use super::pair::Pair;
-use crate::math::Vec3;
+use crate::math::{Real, Vec3};
 use crate::prim::inclusion::Grid;
 
 /// The distance of a query, with its roundings.
@@ -61,6 +61,17 @@ pub enum Advanced<S> {
         /// Not before.
         from: S,
     },
+}
+
+impl<S: Real> Advanced<S> {
+    /// Not within the distance before it; `None` if never.
+    #[inline(always)]
+    pub fn from(self) -> Option<S> {
+        match self {
+            Advanced::Apart => None,
+            Advanced::Within { from, .. } | Advanced::Near { from } | Advanced::Open { from } => Some(from),
+        }
+    }
 }
 
 /// Limits of an advancement.

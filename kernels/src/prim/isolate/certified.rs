@@ -68,8 +68,8 @@ fn climb<const N: usize>(
 ) -> Verdict {
     let given_up = || Verdict::undecided(0.0, p.end, 0, true);
     if p.min_separation > 0.0 {
-        let first = if rungs == Rungs::Double { None } else { in_single(&single(), p) };
-        return first.unwrap_or_else(|| in_double(double(), p));
+        let first = if rungs == Rungs::Double { Err(0.0) } else { in_single(&single(), p) };
+        return first.unwrap_or_else(|from| in_double(double(), from, p));
     }
     if rejected(&single()) {
         return Verdict::separated(p.end, 0);

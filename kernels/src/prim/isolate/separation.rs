@@ -1,5 +1,8 @@
 //! The rungs of a separation: advancement in f32, then advancement and nearness in f64.
 //!
+//! What f32 has proven of a pair that it leaves is not lost: f64 begins at that time. So a pair whose
+//! time is only too coarse takes f64 a step or two.
+//!
 //! A rung runs step by step, so a GPU can keep many pairs in step, or give a lane a new pair when
 //! one is finished.
 
@@ -8,6 +11,7 @@ use super::hull::Hull;
 use super::ladder::{met, nearly, nearness};
 use super::normal::Normal;
 use super::pair::Pair;
+use crate::math::Real;
 use crate::prim::inclusion::{Grid, Params, Verdict};
 
 /// Steps of advancement in f32 before f64 takes over; few pairs take more.
@@ -86,9 +90,19 @@ pub fn verdict(told: Advanced<f32>, known: f32, p: &Params) -> Option<Verdict> {
     }
 }
 
-/// All of the rung in f32: its verdict, if it has one.
+/// The time until which f32 has proven the separation of a pair without a verdict: the next rung
+/// begins there. It is a number of f32, so f64 has it exactly.
 #[inline(always)]
-pub fn in_single<const N: usize>(pair: &Pair<f32, N>, p: &Params) -> Option<Verdict> {
+pub fn proven(told: Advanced<f32>) -> f64 {
+    told.from().unwrap_or(0.0).wide()
+}
+
+/// All of the rung in f32: its verdict.
+///
+/// # Errors
+/// Without a verdict, the time where the next rung begins.
+#[inline(always)]
+pub fn in_single<const N: usize>(pair: &Pair<f32, N>, p: &Params) -> Result<Verdict, f64> {
     let mut single = Single::begin(&pair.of_four(), p);
     loop {
         let told = match single.fixed(p) {
@@ -96,7 +110,7 @@ pub fn in_single<const N: usize>(pair: &Pair<f32, N>, p: &Params) -> Option<Verd
             Err(ahead) => single.ahead(ahead, p, || pair.normal()),
         };
         if let Some(told) = told {
-            return verdict(told, single.known, p);
+            return verdict(told, single.known, p).ok_or(proven(told));
         }
     }
 }
@@ -111,10 +125,12 @@ pub struct Double {
 }
 
 impl Double {
-    /// At the start.
+    /// From a time before which the features are certainly farther apart.
     #[inline(always)]
-    pub fn begin(pair: Pair<f64, 4>, p: &Params) -> Self {
-        let advance = Advance::new(pair, (0.0, pair.end), separation(&pair, p), ADVANCES);
+    pub fn begin(pair: Pair<f64, 4>, from: f64, p: &Params) -> Self {
+        // A number that is no time of the step proves nothing.
+        let from = if from >= 0.0 && from <= pair.end { from } else { 0.0 };
+        let advance = Advance::new(pair, (from, pair.end), separation(&pair, p), ADVANCES);
         Double { advance, nearness: false, tolerance: p.tolerance }
     }
     /// Whether it is a vertex and a face.
@@ -148,10 +164,10 @@ impl Double {
     }
 }
 
-/// All of the rung in f64.
+/// All of the rung in f64, from a time before which the features are certainly farther apart.
 #[inline(always)]
-pub fn in_double<const N: usize>(pair: Pair<f64, N>, p: &Params) -> Verdict {
-    let mut double = Double::begin(pair.of_four(), p);
+pub fn in_double<const N: usize>(pair: Pair<f64, N>, from: f64, p: &Params) -> Verdict {
+    let mut double = Double::begin(pair.of_four(), from, p);
     loop {
         if let Some(verdict) = double.step(p, || pair.normal()) {
             return verdict;

@@ -7,11 +7,11 @@
 //! Reads    pairs, faces or edges, positions of both frames (four vertices); tolerances of bodies,
 //!          if they differ.
 //! Writes   contacts and undecided pairs with bounds of toi; or the earliest. The rest, in its own
-//!          list.
+//!          list, each with the time before which it is certainly farther apart.
 //! Before   pairs are complete.
-//! After    {pairs that come within the separation} ⊆ listed ∪ left; no time is late. See
+//! After    {pairs that come within the separation} ⊆ listed ∪ begun; no time is late. See
 //!          [`crate::prim::isolate::advance`].
-//! Room     hits, left: counted past the end, grown, run again. Pairs under way: new ones are taken
+//! Room     hits, begun: counted past the end, grown, run again. Pairs under way: new ones are taken
 //!          up only as there is room.
 //! Cost     8 B pair, 12 B indices, 128 B positions (gathered). 200 B on chip for a pair under way.
 //!          600 operations to take up a pair, 600 a turn. Half of the pairs end in the first, most
@@ -19,13 +19,13 @@
 
 use super::climb::emit;
 use super::{edge_edge, of_edge_edge, of_vertex_face, vertex_face};
-use crate::abi::{Pair, RungArgs};
+use crate::abi::{Begun, Pair, RungArgs};
 use crate::exec::{Block, Lane, Shared};
 use crate::math::{Real, Vec3};
-use crate::prim::isolate::advance::{Distance, Progress};
+use crate::prim::isolate::advance::{Advanced, Distance, Progress};
 use crate::prim::isolate::hull::Hull;
 use crate::prim::isolate::normal::{NUMBERS, Normal};
-use crate::prim::isolate::separation::{Single, verdict};
+use crate::prim::isolate::separation::{Single, proven, verdict};
 use crate::prim::isolate::{Edges, Face};
 
 /// Words of eight bytes of a pair under way.
@@ -125,8 +125,8 @@ pub fn abreast<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
                     match (verdict(told, single.known, &args.params), single.hull.is_face) {
                         (Some(verdict), true) => emit(lane, args, &args.vf, pair, verdict),
                         (Some(verdict), false) => emit(lane, args, &args.ee, pair, verdict),
-                        (None, true) => args.vf.left.push(lane, pair),
-                        (None, false) => args.ee.left.push(lane, pair),
+                        (None, true) => args.vf.begun.push(lane, for_double(pair, told)),
+                        (None, false) => args.ee.begun.push(lane, for_double(pair, told)),
                     }
                     line.end(lane, place);
                 } else {
@@ -138,6 +138,12 @@ pub fn abreast<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
         });
         line.turned(block, some);
     }
+}
+
+/// A pair for f64, with the time that is proven.
+#[inline(always)]
+fn for_double(pair: Pair, told: Advanced<f32>) -> Begun {
+    Begun { pair, from: proven(told).to_bits() }
 }
 
 /// The pairs under way, in shared memory: each in a place of its own, and the places in line.

@@ -5,20 +5,20 @@
 //!          then the next.
 //!          A finished lane draws the next pair of its block, so few lanes idle.
 //!          A block's pairs are a grid apart. The kinds begin at opposite ends of the grid.
-//! Reads    pairs, faces or edges, positions of both frames (four vertices); tolerances of bodies,
-//!          if they differ.
+//! Reads    pairs, those of `abreast` with a time; faces or edges, positions of both frames (four
+//!          vertices); tolerances of bodies, if they differ.
 //! Writes   contacts and undecided pairs with bounds of toi; or the earliest.
-//! Before   pairs are complete.
+//! Before   pairs are complete. Before its time a pair is certainly farther apart.
 //! After    {pairs that come within the separation} ⊆ listed; no time is late. See
 //!          [`crate::prim::isolate::advance`].
 //!          A pair whose steps run out is listed as undecided.
 //! Room     hits: counted past the end, grown, run again.
-//! Cost     8 B pair, 12 B indices, 128 B positions (gathered). 300 to 600 operations a step,
-//!          mostly two to fifteen steps.
+//! Cost     16 B pair (8 B without a time), 12 B indices, 128 B positions (gathered). 300 to 600
+//!          operations a step, mostly one or two steps behind f32, two to fifteen without it.
 
 use super::climb::emit;
 use super::{edge_edge, of_edge_edge, of_vertex_face, vertex_face};
-use crate::abi::{Pair, RungArgs};
+use crate::abi::{Listed, Pair, RungArgs};
 use crate::exec::{Block, Lane};
 use crate::math::Real;
 use crate::prim::isolate::normal::{NUMBERS, Normal};
@@ -30,11 +30,30 @@ pub const fn shared_bytes(lanes: u32) -> u32 {
     8 * NUMBERS as u32 * lanes + 8
 }
 
+/// How many pairs there are. They have times if `is_begun`.
+#[inline(always)]
+fn listed<B: Block>(block: &B, of: &Listed, is_begun: bool) -> u32 {
+    if is_begun { of.begun.listed(block) } else { of.pairs.listed(block) }
+}
+
+/// A pair, and the time where f64 begins.
+#[inline(always)]
+fn nth<L: Lane>(lane: &L, of: &Listed, is_begun: bool, i: u32) -> (Pair, f64) {
+    if is_begun {
+        let begun = of.begun.get(lane, i);
+        (begun.pair, f64::from_bits(begun.from))
+    } else {
+        (of.pairs.get(lane, i), 0.0)
+    }
+}
+
 /// All pairs of both lists.
 #[inline(always)]
 pub fn separate<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
     let (first, blocks) = (block.block(), block.blocks());
-    let (count_vf, count_ee) = (args.vf.pairs.listed(block), args.ee.pairs.listed(block));
+    // Whether f32 has left the pairs.
+    let is_begun = !args.vf.begun.count().is_empty();
+    let (count_vf, count_ee) = (listed(block, &args.vf, is_begun), listed(block, &args.ee, is_begun));
     let lanes = block.lanes();
     let (normals, drawn) = (block.shared::<u64>(NUMBERS as u32 * lanes), block.shared::<u32>(2));
     block.phase(|lane| {
@@ -72,19 +91,19 @@ pub fn separate<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
                 if i >= count as u64 {
                     (is_face, kinds) = (!is_face, kinds - 1);
                 } else if is_face {
-                    let pair = args.vf.pairs.get(lane, i as u32);
+                    let (pair, from) = nth(lane, &args.vf, is_begun, i as u32);
                     let p = of_vertex_face(lane, args, pair);
                     let (v, f) = vertex_face(lane, &args.frames, args.faces, pair);
                     let face = Face::new(v, f, &p);
                     put(face.normal());
-                    under_way = Some((pair, Double::begin(face.of_four(), &p)));
+                    under_way = Some((pair, Double::begin(face.of_four(), from, &p)));
                 } else {
-                    let pair = args.ee.pairs.get(lane, i as u32);
+                    let (pair, from) = nth(lane, &args.ee, is_begun, i as u32);
                     let p = of_edge_edge(lane, args, pair);
                     let [x, y] = edge_edge(lane, &args.frames, args.edges, pair);
                     let edges = Edges::new(x, y, &p);
                     put(edges.normal());
-                    under_way = Some((pair, Double::begin(edges, &p)));
+                    under_way = Some((pair, Double::begin(edges, from, &p)));
                 }
             }
             // Lanes that drew and lanes that did not step side by side.
