@@ -9,6 +9,8 @@ mod near;
 mod query;
 mod refuse;
 mod repeat;
+#[cfg(test)]
+mod sampled;
 mod scene;
 mod submit;
 #[cfg(test)]

@@ -183,7 +183,8 @@ impl Rungs {
     }
 
     /// Launches the rungs, the first one over `first`. For a sample it launches only the rungs that
-    /// find most contacts: the others would cost launches for little.
+    /// find most contacts: the others would cost launches for little. There f64 works only if f32
+    /// has found nothing: any time is a bound.
     ///
     /// # Errors
     /// Device errors.
@@ -234,7 +235,10 @@ impl Rungs {
                 counters: given.counters,
                 tolerances: self.tolerances.span(),
                 params: self.certified.params(),
-                flags: RungFlags::EVERYTHING.when(everything) | RungFlags::DEFERS.when(asked.is_some()),
+                flags: RungFlags::EVERYTHING.when(everything)
+                    | RungFlags::DEFERS.when(asked.is_some())
+                    | RungFlags::MARKS.when(sample && rung == Rung::Isolate32)
+                    | RungFlags::UNLESS_MARKED.when(sample && before.is_some()),
                 pad: 0,
             };
             let capacity = before.map_or(first[0].capacity() + first[1].capacity(), Left::capacity);

@@ -1,12 +1,17 @@
-//! The least time of a query for the earliest time alone, as kernels lower it: two words of device
-//! memory, atomic minima. All bits of both are set while there is none.
+//! The least time of a query for the earliest time alone, as kernels lower it: words of device
+//! memory, atomic minima. All bits of each are set while there is none.
 
 /// The word that holds the bits of the time, an f64.
 pub const TIME: u32 = 0;
 /// The word that holds its [`key`].
 pub const KEY: u32 = 1;
+/// The word that is 0 once a rung that [marks] has found a time. A later rung reads it, which does
+/// not mark: so whether it works does not depend on the order of its own blocks.
+///
+/// [marks]: super::RungFlags::MARKS
+pub const MARK: u32 = 2;
 /// How many words there are.
-pub const WORDS: u32 = 2;
+pub const WORDS: u32 = 3;
 
 /// A time in [0, 1] and whether it is that of an undecided pair, in one number: less for the less
 /// time, and of equal times for the contact. Twice the bits of a number up to 1 fit.

@@ -102,5 +102,9 @@ flags! {
         EVERYTHING,
         /// `narrow_isolate` in f64 lists the pairs to settle, if its list is long.
         DEFERS,
+        /// It marks that it has found a time, for an earliest query.
+        MARKS,
+        /// It does nothing if the rung before it has marked a time.
+        UNLESS_MARKED,
     }
 }

@@ -9,6 +9,8 @@
 //!          A lane a pair, both kinds in one launch. A block takes tiles of one kind; a grid of any
 //!          size strides. In f64 it is as many blocks of one warp as run at once: few pairs are
 //!          left, and they are spread over all of them, 16 lanes of a warp at least.
+//!          The sample of an earliest query only wants a bound: f64 ends at once if f32 has found a
+//!          time. Whether it has does not depend on the order.
 //! Reads    pairs, faces or edges, positions of both frames (four vertices); tolerances of bodies,
 //!          if they differ.
 //! Writes   contacts and undecided pairs with bounds of toi; or one number, for an earliest query.
@@ -66,6 +68,9 @@ pub fn isolate_and_settle<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) 
     let ee = |lane: &B::Lane, pair| {
         (of_edge_edge(lane, args, pair), edge_edge(lane, &args.frames, args.edges, pair))
     };
+    if args.flags.has(RungFlags::UNLESS_MARKED) && block.load(args.earliest, earliest::MARK) == 0 {
+        return;
+    }
     let [vf_tiles, ee_tiles] = dealt(block, args, true);
     let is_long = vf_tiles.count as u64 + ee_tiles.count as u64 > LONG;
     let is_deferred = is_long && args.flags.has(RungFlags::DEFERS);
@@ -347,6 +352,9 @@ fn keep<R: Real, L: Lane>(lane: &L, args: &RungArgs<R>, verdict: Verdict) -> boo
     }
     if !args.earliest.is_empty() {
         lower(lane, args.earliest, verdict);
+        if args.flags.has(RungFlags::MARKS) && lane.fetch_load(args.earliest, earliest::MARK) != 0 {
+            lane.fetch_min(args.earliest, earliest::MARK, 0);
+        }
         return false;
     }
     if !verdict.is_contact() {
