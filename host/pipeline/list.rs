@@ -151,7 +151,7 @@ pub trait GrowableOutput {
 
 /// A list between two steps, as two machines compare it.
 pub trait Comparable {
-    /// Returns a hash of the entries, whatever their order.
+    /// Returns a hash of the entries; their order does not matter.
     ///
     /// # Errors
     /// Device errors.

@@ -16,7 +16,7 @@ struct Left {
     said: Verdict,
 }
 
-/// What is wrong with a pair, if anything. The first time of a contact is in the intervals of both.
+/// The fault of a pair, if it has one. The first time of a contact is in the intervals of both.
 fn fault(Left { from, alone, said }: &Left) -> Option<&'static str> {
     if alone.is_contact() && *from > alone.toi_upper {
         return Some("f64 begins behind a contact");
@@ -112,7 +112,7 @@ fn a_time_that_is_late_would_be_named() {
     assert!(named * 2 > met && met > 1000, "{named} of {met}");
 }
 
-/// What is no time of the step proves nothing: f64 begins at the start.
+/// A number that is no time of the step proves nothing: f64 begins at the start.
 #[test]
 fn what_is_no_time_proves_nothing() {
     let p = Params { min_separation: 1e-3, ..Params::new(1e-6) };
