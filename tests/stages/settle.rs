@@ -65,7 +65,8 @@ fn a_long_list_is_settled_as_a_short_one() {
     let undecided = alone.iter().filter(|row| row.status == Status::Undecided).count();
     assert_eq!(touching, 3 * 1_000 + 4 * 31 * 31, "they touch at the start");
     assert!(undecided > 100, "{undecided} of the couples are near");
-    let bodies = (0..MANY).map(|i| flat().with_filter(CollisionFilter::in_environment(i as u32))).collect();
+    let bodies: Vec<_> =
+        (0..MANY).map(|i| flat().with_filter(CollisionFilter::in_environment(i as u32))).collect();
     let (all, many) = asked(bodies, Query::continuous());
     assert!(many > LONG, "{many} pairs: the long list is short");
     assert_eq!(all.len(), MANY * alone.len());
@@ -76,7 +77,8 @@ fn a_long_list_is_settled_as_a_short_one() {
 
 #[test]
 fn a_long_list_leaves_the_earliest_time() {
-    let bodies = (0..MANY).map(|i| flat().with_filter(CollisionFilter::in_environment(i as u32))).collect();
+    let bodies: Vec<_> =
+        (0..MANY).map(|i| flat().with_filter(CollisionFilter::in_environment(i as u32))).collect();
     let mut detector = OneQuery::new(engine(), bodies, Query::earliest()).expect("a detector");
     assert_eq!(detector.detect().expect("an answer").earliest_toi(), Some(0.0));
 }

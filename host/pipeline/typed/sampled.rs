@@ -34,7 +34,9 @@ fn left(mode: Mode, body: Body, precision: CertifiedPrecision) -> [u64; 2] {
     let (mut pipeline, at) = one(&device, &bodies, &layout, query);
     let (scene, own) = (&mut pipeline.scene, &mut pipeline.queries[at]);
     own.counters.clear().expect("counters");
-    [Stage::Fit, Stage::Refit].map(|stage| own.run(scene, stage).expect("volumes"));
+    for stage in [Stage::Fit, Stage::Refit] {
+        own.run(scene, stage).expect("volumes");
+    }
     own.step(scene, Step::Traverse).expect("candidates");
     own.narrow.take_samples(&device).expect("memory");
     for k in own.narrow_steps_at() {
