@@ -22,6 +22,12 @@ pub struct Engine {
     pub holds_f64: bool,
     /// Whether it holds both ends of the step: from the first query in motion on.
     pub has_ends: bool,
+    /// Whether it holds vertices in the scene: from the first query on that reads them.
+    pub has_vertices: bool,
+    /// Whether discrete queries read bodies as instances, as long as there is this pipeline.
+    pub has_instances: bool,
+    /// Whether a submission was prepared: these read vertices.
+    pub submits: bool,
     /// Query whose answer the device holds, for the current positions.
     pub answered: Option<Query>,
     /// Milliseconds of the last build of tiles or trees.
@@ -43,7 +49,8 @@ impl Engine {
     /// Those of the device.
     pub fn begin(&mut self, device: &Device, scene: &Scene, layout: Arc<Layout>) -> Result<(), Error> {
         self.holds_f64 = scene.bodies().iter().any(Body::needs_f64);
-        let parts = SceneParts { layout, holds_f64: self.holds_f64, has_ends: self.has_ends };
+        let (has_ends, has_vertices) = (self.has_ends, self.has_vertices);
+        let parts = SceneParts { layout, holds_f64: self.holds_f64, has_ends, has_vertices };
         self.pipeline = Some(pipeline::pipeline(device.clone(), scene.bodies(), &parts)?);
         (self.frames, self.last) = (0, None);
         Ok(())

@@ -6,6 +6,7 @@ mod engine;
 mod figures;
 mod frame;
 mod geometry;
+mod instances;
 mod interrupted;
 mod layouts;
 mod moves;

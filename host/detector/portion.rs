@@ -36,6 +36,11 @@ impl Portion {
         self.slices.push((shape, slices));
     }
 
+    /// Whether a query has more than one slice.
+    pub fn has_slices(&self) -> bool {
+        !self.slices.is_empty()
+    }
+
     /// Forgets all slices, after the bodies changed.
     pub fn forget_slices(&mut self) {
         self.slices.clear();

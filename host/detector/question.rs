@@ -14,10 +14,11 @@ pub struct Question {
 
 impl Question {
     /// Returns the part of a share, for the bodies of a layout.
-    pub fn parts(&self, layout: Arc<Layout>, share: Share) -> QueryParts {
+    pub fn parts(&self, layout: Arc<Layout>, share: Share, is_of_instances: bool) -> QueryParts {
         let tolerances = self.tolerances.as_ref();
         let records = tolerances.map_or_else(Vec::new, |tolerances| tolerances.records(&layout.starts));
-        QueryParts { query: self.with_largest_tolerance(), tolerances: records, layout, share }
+        let query = self.with_largest_tolerance();
+        QueryParts { query, tolerances: records, layout, share, is_of_instances }
     }
 
     /// Returns the query with the largest tolerance of its pairs: volumes grow by it.

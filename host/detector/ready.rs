@@ -108,11 +108,12 @@ impl Detector {
             self.engine.drop_pipeline();
             self.engine.has_ends = true;
         }
+        let is_of_instances = self.reads_instances(&question.query);
         self.begin_scene()?;
         let (bodies, slice) = (self.scene.bodies(), self.portion.first_slice(&question.query));
         let Some(pipeline) = &mut self.engine.pipeline else { return Ok(None) };
         let moving = layout.moving_triangles();
-        let at = pipeline.take_query(&question.parts(layout, slice))?;
+        let at = pipeline.take_query(&question.parts(layout, slice, is_of_instances))?;
         let is_first = pipeline.ready(at, bodies)?;
         let is_worn = question.query.search().rebuilds() && pipeline.wear(at).is_worn(moving);
         if is_first || is_worn {
@@ -132,6 +133,7 @@ impl Detector {
             return Ok(());
         }
         self.all_known()?;
+        self.choose_instances();
         self.engine.begin(&self.device, &self.scene, layout)
     }
 

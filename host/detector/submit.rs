@@ -94,6 +94,7 @@ impl Detector {
         let in_motion = queries.iter().find(|query| !query.kind().is_at_rest());
         // If any query will read the end of the step, positions have room for it from the first on.
         self.engine.has_ends |= in_motion.is_some() && self.engine.pipeline.is_none();
+        self.begin_submissions();
         self.apply(&given, in_motion)?;
         let questions = queries.iter().map(|&query| self.question(query)).collect::<Result<Vec<_>, _>>()?;
         // Once before the rounds. Then lists that queries share have the longest length, and there

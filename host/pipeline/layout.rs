@@ -53,6 +53,11 @@ pub struct FeatureTopology {
 }
 
 impl Layout {
+    /// Returns a layout without bodies.
+    pub fn nobody() -> Layout {
+        Layout { starts: vec![Offsets::default()], ..Layout::default() }
+    }
+
     /// Lays out bodies for a kind of query, one behind the other; numbers edges only if the query
     /// needs them.
     pub fn new(bodies: &[Body], kind: QueryKind) -> Layout {
@@ -62,7 +67,7 @@ impl Layout {
 
     /// As [`Layout::new`], for work that may be interrupted: `None` if it was.
     pub fn within(bodies: &[Body], kind: QueryKind, looks: &Looks) -> Option<Layout> {
-        let mut all = Layout { starts: vec![Offsets::default()], ..Layout::default() };
+        let mut all = Layout::nobody();
         let mut at = Offsets::default();
         let mut faces = Vec::new();
         let mut environments: Vec<u32> = bodies.iter().filter_map(|body| body.filter().environment).collect();

@@ -7,6 +7,7 @@ pub mod counts;
 mod demand;
 pub mod enclose;
 mod hubs;
+mod instances;
 mod launch;
 mod layout;
 pub mod list;
@@ -47,6 +48,8 @@ pub struct SceneParts {
     pub holds_f64: bool,
     /// Whether a query reads the end of the step.
     pub has_ends: bool,
+    /// Whether a query reads vertices in the scene. Others read bodies as instances.
+    pub has_vertices: bool,
 }
 
 /// Parameters of a query of the scene.
@@ -60,13 +63,15 @@ pub struct QueryParts {
     pub tolerances: Vec<BodyTolerance>,
     /// Its share of the work.
     pub share: Share,
+    /// Whether it reads bodies as instances: a whole discrete query of rigid and fixed bodies.
+    pub is_of_instances: bool,
 }
 
 #[cfg(test)]
 impl QueryParts {
     /// Returns a query with all of its work.
     fn whole(layout: Arc<Layout>, query: Query) -> QueryParts {
-        QueryParts { layout, query, tolerances: Vec::new(), share: Share::WHOLE }
+        QueryParts { layout, query, tolerances: Vec::new(), share: Share::WHOLE, is_of_instances: false }
     }
 }
 

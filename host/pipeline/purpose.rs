@@ -12,6 +12,12 @@ pub const REST: &str = "vertices of rigid bodies without a pose";
 pub const UPLOADED: &str = "vertices of deformable bodies, uploaded";
 /// Poses of rigid bodies.
 pub const POSES: &str = "poses of rigid bodies";
+/// Meshes of instances: tiles, triangles, vertices.
+pub const MESHES: &str = "meshes in their own frames, once each";
+/// Bodies as instances of meshes.
+pub const INSTANCES: &str = "mesh and place of each body";
+/// Boxes of bodies, and of groups of bodies.
+pub const BODY_BOXES: &str = "boxes of bodies, of groups and above, and their order";
 /// Which bodies are placed, and how.
 pub const PLACEMENTS: &str = "which bodies are placed, and how";
 /// Links, parents, leaves and levels.

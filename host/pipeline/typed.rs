@@ -148,7 +148,7 @@ impl<R: Precision> TypedPipeline<R> {
     /// # Errors
     /// Device errors.
     pub fn new(device: Device, bodies: &[Body], parts: &SceneParts) -> Result<Self, Error> {
-        let scene = SceneMemory::new(device, &parts.layout, bodies, parts.has_ends)?;
+        let scene = SceneMemory::new(device, bodies, parts)?;
         Ok(TypedPipeline { scene, queries: Vec::new(), submission: None })
     }
 }
@@ -177,11 +177,11 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
 
     fn place(&mut self, bodies: &[Body], moved: &[Moved]) -> Result<(), Error> {
         self.submission = None;
-        let SceneMemory { device, vertices, placing, placings, .. } = &mut self.scene;
-        *placings += 1;
-        let start = device.event()?;
-        vertices.put(device, bodies, moved)?;
-        *placing = vec![[start, device.event()?]];
+        let scene = &mut self.scene;
+        scene.placings += 1;
+        let start = scene.device.event()?;
+        scene.place(bodies, moved)?;
+        scene.placing = vec![[start, scene.device.event()?]];
         Ok(())
     }
 
@@ -269,6 +269,10 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
     fn fingerprints(&self, query: usize) -> Result<Vec<(&'static str, u64)>, Error> {
         let own = &self.queries[query];
         let mut prints = self.broad(query).fingerprints()?;
+        if own.is_of_instances {
+            // Candidates name pairs of tiles by their places, which depend on the schedule.
+            return Ok(prints);
+        }
         let mut lists = vec![named("traverse", &self.scene.pairs)];
         lists.extend(own.narrow.between(&self.scene.features));
         for (name, list) in lists {
@@ -279,6 +283,11 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
 
     fn check(&self, query: usize) -> Result<(), Error> {
         let own = &self.queries[query];
+        if let Some(instances) = self.scene.instances.as_ref().filter(|_| own.is_of_instances) {
+            let positions = instances.positions(&own.layout)?;
+            let positions = positions.into_iter().map(|point| point.map(|x| R::of(x))).collect();
+            return self.broad(query).check(&own.layout, &own.layout.faces, &[positions]);
+        }
         let faces = self.scene.faces.read(self.scene.faces.len())?;
         let positions = self.scene.vertices.positions(own.is_at_rest())?;
         self.broad(query).check(&own.layout, &faces, &positions)
@@ -300,7 +309,7 @@ fn one(
     query: Query,
 ) -> (TypedPipeline<f32>, usize) {
     let has_ends = !query.kind().is_at_rest();
-    let parts = SceneParts { layout: layout.clone(), holds_f64: false, has_ends };
+    let parts = SceneParts { layout: layout.clone(), holds_f64: false, has_ends, has_vertices: true };
     let mut pipeline = TypedPipeline::<f32>::new(device.clone(), bodies, &parts).expect("memory");
     let at = pipeline.take_query(&QueryParts::whole(layout.clone(), query)).expect("memory");
     pipeline.ready(at, bodies).expect("ready");

@@ -200,6 +200,15 @@ impl Query {
         shape
     }
 
+    /// Returns whether it can read rigid and fixed bodies as instances of their meshes: a discrete
+    /// query by exact signs, without a choice of how candidates are found.
+    pub(crate) fn may_read_instances(&self) -> bool {
+        let Query::Discrete(Discrete { test: TriangleTest::Exact { .. }, search }) = self else {
+            return false;
+        };
+        *search == Search { rebuild: search.rebuild, ..Search::default() }
+    }
+
     /// Returns the rows of its answer; `None` if the answer is one row at most.
     pub(crate) fn rows(&self) -> Option<ListedRows> {
         self.question().rows()

@@ -1,6 +1,7 @@
 //! The kernel table: one line an entry, or one for an entry of every volume. The PTX entries and
 //! the host's list come from the same line.
 
+mod lanes;
 mod name;
 
 use crate::abi::*;
@@ -13,18 +14,21 @@ use crate::prim::isolate::ladder::SLICES;
 use crate::queue::worker;
 use crate::sort;
 use crate::stage::construct::{cuts, graft, morton, tile_filters, tree, treelet};
-use crate::stage::fit::{leaves as fit_of_leaves, rims, tiles as fit_of_tiles};
+use crate::stage::fit::{bodies as fit_of_bodies, leaves as fit_of_leaves, rims, tiles as fit_of_tiles};
 use crate::stage::narrow::discrete::{Start, Still};
+use crate::stage::narrow::placed::Placed;
 use crate::stage::narrow::{
     abreast, below_precision, certain, climb, cull, discrete, features, near, nearest, separate, slice, solve,
 };
 use crate::stage::refit::{levels, tiles as refit_of_tiles, treelets};
+use crate::stage::traverse::instances::{nodes, relations, triangles as instance_triangles};
 use crate::stage::traverse::{
     front, nearest as nearest_first, per_leaf, queue, steal, tile_triangles, tiles as tile_pairs,
 };
 use crate::stage::{balance, order, place, starts, status};
 use bytemuck::NoUninit;
 use core::marker::PhantomData;
+use lanes::{BALANCE, NARROW, RUNG, SPREAD, WIDE};
 use name::{Name, precision};
 
 /// A kernel, for the host.
@@ -112,7 +116,7 @@ macro_rules! is_entry {
 
 /// From lines of `name: path, [arguments], lanes, shared;` makes the types and their PTX entries.
 macro_rules! kernels {
-    ($($name:ident: $path:expr, [$args:ty], $lanes:expr, $shared:expr $(, registers = $registers:literal)?;)*) => {
+    ($($name:ident: $path:expr, [$args:ty], $lanes:expr, $shared:expr $(, exact = $exact:literal)? $(, registers = $registers:literal)?;)*) => {
         $(
             #[doc = concat!("`", stringify!($name), "`")]
             #[allow(non_camel_case_types, reason = "the type is the entry's name")]
@@ -120,7 +124,7 @@ macro_rules! kernels {
             pub struct $name;
             impl Entry for $name {
                 const NAME: &'static str = stringify!($name);
-                is_entry!($path, [$args], $lanes, $shared $(, registers = $registers)?);
+                is_entry!($path, [$args], $lanes, $shared $(, exact = $exact)? $(, registers = $registers)?);
             }
         )*
         entries! { $($name, stringify!($name);)* }
@@ -268,19 +272,6 @@ const fn put(all: &mut [Line], at: usize, lines: &[Line]) -> usize {
     at + lines.len()
 }
 
-/// Lanes of kernels whose work is the same for every lane.
-const WIDE: u32 = 256;
-/// Lanes of kernels with long or uneven work: small blocks, so that few lanes wait for a long one
-/// (measured: `benches/NOTES.md`).
-const NARROW: u32 = 64;
-/// Lanes of the rung in f64: few pairs, spread over all warps that run at once.
-const SPREAD: u32 = 32;
-/// Lanes of rejection, of the rungs of a separation and of distances: work is uneven, and two lists
-/// are appended to.
-const RUNG: u32 = 128;
-/// Lanes of the one block that evens the queues, as in the paper.
-const BALANCE: u32 = 512;
-
 kernels! {
     place_f32: place::place::<f32, B>, [PlaceArgs<f32>], WIDE, place::SHARED;
     place_f64: place::place::<f64, B>, [PlaceArgs<f64>], WIDE, place::SHARED;
@@ -298,6 +289,10 @@ kernels! {
     construct_emit: tree::emit, [TreeArgs], WIDE, 0;
     construct_tile_filters: tile_filters::filters, [TileFiltersArgs], WIDE, 0;
     construct_treelets: treelet::plan, [PlanArgs], WIDE, treelet::SHARED;
+    fit_bodies: fit_of_bodies::bodies, [BodiesArgs], fit_of_tiles::LANES, fit_of_tiles::shared_bytes::<bv::FrameBox>(), exact = true;
+    traverse_relations: relations::relations, [RelationsArgs], NARROW, 0;
+    traverse_nodes: nodes::nodes, [NodesArgs], nodes::LANES, nodes::SHARED, exact = true;
+    traverse_instances: instance_triangles::triangles, [InstancesArgs], instance_triangles::LANES, instance_triangles::SHARED, exact = true;
     balance_copy: balance::copy, [BalanceArgs], BALANCE, 0;
     narrow_moller_f32: discrete::moller::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;
     narrow_moller_f64: discrete::moller::<f64, B>, [DiscreteArgs<f64>], WIDE, 0;
@@ -306,6 +301,8 @@ kernels! {
     narrow_wide_f32: certain::wide::<Still, B>, [DiscreteArgs<f32>], NARROW, certain::SHARED;
     narrow_exact_f32: certain::exact::<f32, Still, B>, [DiscreteArgs<f32>], NARROW, certain::SHARED;
     narrow_exact_f64: certain::exact::<f64, Still, B>, [DiscreteArgs<f64>], NARROW, certain::SHARED;
+    narrow_filter_placed: discrete::filter::<f64, Placed, B>, [PlacedArgs], WIDE, discrete::shared_bytes(WIDE);
+    narrow_exact_placed: certain::exact::<f64, Placed, B>, [PlacedArgs], NARROW, certain::SHARED;
     narrow_start_filter_f32: discrete::filter::<f32, Start, B>, [DiscreteArgs<f32>], WIDE, discrete::shared_bytes(WIDE), registers = 64;
     narrow_start_filter_f64: discrete::filter::<f64, Start, B>, [DiscreteArgs<f64>], WIDE, discrete::shared_bytes(WIDE);
     narrow_start_wide_f32: certain::wide::<Start, B>, [DiscreteArgs<f32>], NARROW, certain::SHARED;

@@ -18,3 +18,4 @@ mod merged;
 mod moving;
 mod near;
 mod orient;
+mod relation;

@@ -2,6 +2,7 @@
 
 mod fans;
 mod geometry;
+mod instances;
 mod one_detector;
 mod rigid;
 mod scene;

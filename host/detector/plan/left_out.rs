@@ -33,7 +33,9 @@ pub fn of(plan: &Plan, layout: &Layout, query: &Query, is_gpu: bool) -> Vec<Left
     let (stage, buffer) = (|name| plan.stage(name).is_none(), |what| plan.buffer(what).is_none());
     let uploads = |what: &str| plan.transfers.iter().any(|t| t.what == what && t.to_device.bytes > 0);
     let placed = uploads(purpose::VERTICES);
-    let why = if placed {
+    let why = if buffer(purpose::VERTICES) {
+        "vertices are placed as they are read"
+    } else if placed {
         "all bodies moved, and all are deformable: uploads are in place"
     } else {
         "no body moved in this frame"
@@ -41,7 +43,10 @@ pub fn of(plan: &Plan, layout: &Layout, query: &Query, is_gpu: bool) -> Vec<Left
     put(stage("place"), "placing of vertices", why);
     put(stage("construct"), "construction", "the tree is kept and refitted, until a rebuild");
     put(fixed.is_empty(), "fixed tree", "no body is fixed");
-    put(buffer(purpose::REST), "poses", "no body is rigid");
+    let (instances, vertices) = (buffer(purpose::INSTANCES), buffer(purpose::VERTICES));
+    put(buffer(purpose::REST) && instances, "poses", "no body is rigid");
+    let why = "all bodies are rigid or fixed: each is a mesh and a pose";
+    put(vertices && !instances, "vertices in the scene", why);
     let why = if query.keeps_adjacent() {
         "one body alone: every pair of its triangles is tested"
     } else {

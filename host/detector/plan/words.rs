@@ -17,7 +17,7 @@ pub const STAGES: [(&str, &str); 9] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 61] = [
+const KERNELS: [(&str, &str); 67] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
     ("place", "poses applied, uploads put in place, other bodies at rest"),
     ("construct_bounds", "the box of each body's centres"),
@@ -31,6 +31,7 @@ const KERNELS: [(&str, &str); 61] = [
     ("construct_emit", "nodes in level order"),
     ("construct_graft", "the fixed tree after the other, once"),
     ("sort_pass", "a pass of the radix sort"),
+    ("fit_bodies", "a place and a box for each body, and boxes of groups"),
     ("fit_tiles", "a volume for each triangle, tile, and 16 tiles"),
     ("fit_rims", "edges opposite to hubs: a volume for each tile and node"),
     ("fit_groups", "nodes of few leaves, from their points"),
@@ -38,6 +39,9 @@ const KERNELS: [(&str, &str); 61] = [
     ("refit_levels", "the volumes of a level"),
     ("refit_treelets", "leaves and all other volumes in one launch"),
     ("refit_tiles", "a volume for 16 nodes, for each further level"),
+    ("traverse_relations", "bodies in the frames of others, if their meshes may meet"),
+    ("traverse_nodes", "pairs of nodes of two meshes, a level lower"),
+    ("traverse_instances", "triangles of pairs of tiles of two bodies, by boxes and planes"),
     ("traverse_leaves", "a walk for each leaf"),
     ("traverse_units", "work units given up by long walks"),
     ("traverse_sample", "the nearest of a few leaves, for a bound"),
@@ -51,6 +55,8 @@ const KERNELS: [(&str, &str); 61] = [
     ("traverse_triangles", "triangles of pairs of tiles, all against all"),
     ("balance_copy", "equally many units in each queue"),
     ("narrow_moller", "the float test of two triangles"),
+    ("narrow_filter_placed", "signs in f64, of vertices placed as they are read"),
+    ("narrow_exact_placed", "exact signs of such, of pairs left uncertain"),
     ("narrow_filter", "signs in the positions' precision"),
     ("narrow_wide", "signs in f64, of pairs left uncertain"),
     ("narrow_exact", "exact signs, of pairs left uncertain"),

@@ -1,19 +1,23 @@
 //! Broad phase: from positions to candidate pairs of triangles. Each broad phase is a strategy with
 //! its own memory; after the narrow phase all give the same answer.
 
+mod instances;
 mod prefix;
 mod sorted;
 mod tiles;
 pub mod trees;
 
 use super::counts::Counts;
+use super::instances::Instances;
 use super::layout::Layout;
 use super::list::GrowableOutput;
 use super::precision::Precision;
 use crate::device::Device;
 use crate::error::Error;
 use crate::query::{BroadPhase, Query, WithVolume};
-use nearmiss_kernels::abi::{BodyRecord, Counters, Output, Pair, Positions, Span, TraverseFlags};
+use nearmiss_kernels::abi::{
+    BodyRecord, Counters, InstanceTables, NodePair, Output, Pair, Positions, Relation, Span, TraverseFlags,
+};
 use nearmiss_kernels::bvh::Violation;
 use nearmiss_kernels::entry::Kernels;
 use nearmiss_kernels::math::{Vec3, round};
@@ -33,6 +37,19 @@ pub struct BroadContext<'a, R: Precision> {
     pub records: Span<BodyRecord>,
     /// Whether launches may be recorded, and run later or never: the host must not rely on them.
     pub is_submitted: bool,
+    /// Meshes and poses, if a query reads bodies as instances.
+    pub instances: Option<&'a Instances>,
+}
+
+/// Candidates of instances, as the narrow phase reads them.
+#[derive(Clone, Copy)]
+pub struct Placeable {
+    /// Meshes and bodies.
+    pub tables: InstanceTables,
+    /// Pairs of bodies whose meshes may meet.
+    pub relations: Span<Relation>,
+    /// Pairs of tiles.
+    pub tile_pairs: Span<NodePair>,
 }
 
 /// A range of the moving tiles, in units of 1/2^32 of their number. A pair belongs to the share
@@ -133,6 +150,12 @@ pub trait CandidateSearch<R: Precision>: Send {
     /// [`CandidateSearch::traverse`] runs again.
     fn lists(&mut self) -> Vec<&mut dyn GrowableOutput>;
 
+    /// Returns what candidates of instances refer to; `None` if candidates are triangles of the
+    /// scene.
+    fn placeable(&self) -> Option<Placeable> {
+        None
+    }
+
     /// Returns whether it can list a sample, and leave out pairs that only meet later.
     fn can_sample(&self) -> bool {
         false
@@ -224,6 +247,17 @@ pub fn broad_phase<R: Precision>(
     margin: f32,
 ) -> Result<Box<dyn CandidateSearch<R>>, Error> {
     query.volume().with(New { device, layout, query, margin, precision: std::marker::PhantomData })
+}
+
+/// Returns the broad phase of a discrete query over bodies as instances. At least one body moves.
+///
+/// # Errors
+/// Device errors.
+pub fn instance_phase<R: Precision>(
+    device: &Device,
+    layout: &Layout,
+) -> Result<Box<dyn CandidateSearch<R>>, Error> {
+    Ok(Box::new(instances::BodyGroups::new(device, layout)?))
 }
 
 /// Arguments for the constructors of broad phases.

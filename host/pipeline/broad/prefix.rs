@@ -33,24 +33,10 @@ pub fn prefixes(bodies: &mut [TreeBody], weights: &[Weight], records: &[BodyReco
         // Halve first: the sum of two large coordinates may overflow.
         .map(|w| [0, 1, 2].map(|k| 0.5 * w.bounds[0][k] + 0.5 * w.bounds[1][k]))
         .collect();
-    let least = |k: usize| centres.iter().map(|c| c[k]).fold(f64::INFINITY, f64::min);
-    let most = |k: usize| centres.iter().map(|c| c[k]).fold(f64::NEG_INFINITY, f64::max);
-    let low = [least(0), least(1), least(2)];
-    let extent = (0..3).map(|k| most(k) - low[k]).fold(0.0, f64::max);
-    let cells = f64::from(1u32 << BITS);
-    let along = |centre: &[f64; 3]| {
-        let cell = |k: usize| {
-            // `as` saturates and converts NaN to 0: no extent.
-            (((centre[k] - low[k]) / extent * cells) as u64).min((1 << BITS) - 1)
-        };
-        (0..BITS).rev().fold(0u64, |code, bit| (0..3).fold(code, |code, k| code << 1 | cell(k) >> bit & 1))
-    };
-    let mut order: Vec<(u32, u64, usize)> =
-        (0..bodies.len()).map(|i| (records[i].environment, along(&centres[i]), i)).collect();
-    order.sort_unstable();
+    let order = along(&centres, |i| records[i].environment);
     let all: u64 = weights.iter().map(|w| u64::from(w.triangles)).sum();
     let mut before = 0u64;
-    for (_, _, i) in order {
+    for i in order {
         let own = u64::from(weights[i].triangles);
         let bits = (all.div_ceil(own)).next_power_of_two().ilog2() + 1;
         let middle = (((2 * before + own) as u128) << CODE_BITS) / (2 * all as u128);
@@ -59,6 +45,27 @@ pub fn prefixes(bodies: &mut [TreeBody], weights: &[Weight], records: &[BodyReco
         bodies[i].prefix_bits = bits;
         before += own;
     }
+}
+
+/// Returns the numbers of bodies by environment, then along a curve through their centres. Cost: a
+/// sort.
+pub fn along(centres: &[[f64; 3]], environment: impl Fn(usize) -> u32) -> Vec<usize> {
+    let least = |k: usize| centres.iter().map(|c| c[k]).fold(f64::INFINITY, f64::min);
+    let most = |k: usize| centres.iter().map(|c| c[k]).fold(f64::NEG_INFINITY, f64::max);
+    let low = [least(0), least(1), least(2)];
+    let extent = (0..3).map(|k| most(k) - low[k]).fold(0.0, f64::max);
+    let cells = f64::from(1u32 << BITS);
+    let code = |centre: &[f64; 3]| {
+        let cell = |k: usize| {
+            // `as` saturates and converts NaN to 0: no extent.
+            (((centre[k] - low[k]) / extent * cells) as u64).min((1 << BITS) - 1)
+        };
+        (0..BITS).rev().fold(0u64, |code, bit| (0..3).fold(code, |code, k| code << 1 | cell(k) >> bit & 1))
+    };
+    let mut order: Vec<(u32, u64, usize)> =
+        centres.iter().enumerate().map(|(i, centre)| (environment(i), code(centre), i)).collect();
+    order.sort_unstable();
+    order.into_iter().map(|(_, _, i)| i).collect()
 }
 
 #[cfg(test)]

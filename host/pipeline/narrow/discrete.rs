@@ -4,6 +4,7 @@ use super::{AnswerLists, Features, Narrow, NarrowContext, growable};
 use crate::contacts::Entries;
 use crate::device::{Ahead, Device};
 use crate::error::Error;
+use crate::pipeline::broad::Placeable;
 use crate::pipeline::counts::Counts;
 use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List, Named, named};
@@ -11,7 +12,10 @@ use crate::pipeline::order::{Order, Ordering, Unordered};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
 use crate::query::TriangleTest;
-use nearmiss_kernels::abi::{DiscreteArgs, DiscreteFlags, Output, Pair, counter};
+use nearmiss_kernels::abi::{
+    DiscreteArgs, DiscreteFlags, Output, Pair, PlacedArgs, Positions, Span, counter,
+};
+use nearmiss_kernels::entry::{narrow_exact_placed, narrow_filter_placed};
 use nearmiss_kernels::stage::narrow::certain::LANES_A_PAIR;
 
 /// The lists of a discrete query.
@@ -68,6 +72,9 @@ impl DiscreteNarrow {
     /// # Errors
     /// Device errors.
     pub fn decide<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
+        if let Some(placeable) = &given.placeable {
+            return self.decide_placed(given, placeable);
+        }
         let args = |pairs: Output<Pair>, uncertain: Option<&List<Pair>>| DiscreteArgs {
             frames: given.frames,
             faces: given.faces,
@@ -90,6 +97,39 @@ impl DiscreteNarrow {
         let Some(last) = last else { return launch::at_once::<R::Exact>(device, lanes(first), &left) };
         launch::at_once::<R::Wide>(device, lanes(first), &left)?;
         launch::at_once::<R::Exact>(device, lanes(last), &args(last.output(given.counters), None))
+    }
+}
+
+impl DiscreteNarrow {
+    /// Launches the exact test over candidates of instances, whose vertices are placed as they are
+    /// read. Flags do not matter: two bodies have no common vertex.
+    fn decide_placed<R: Precision>(
+        &self,
+        given: &NarrowContext<R>,
+        placeable: &Placeable,
+    ) -> Result<(), Error> {
+        let Placeable { tables, relations, tile_pairs } = *placeable;
+        let args = |pairs: Output<Pair>, uncertain: Output<Pair>| PlacedArgs {
+            lists: DiscreteArgs {
+                frames: Positions { still: Span::EMPTY, moving: Span::EMPTY },
+                faces: Span::EMPTY,
+                pairs,
+                contacts: self.contacts.output(given.counters),
+                uncertain,
+                flags: DiscreteFlags::NONE,
+                pad: 0,
+            },
+            tables,
+            relations,
+            tile_pairs,
+        };
+        let [left] = &*self.uncertain else {
+            return Err(Error::Bug { what: "instances are tested by exact signs in f64 only".into() });
+        };
+        let (device, uncertain) = (given.device, left.output(given.counters));
+        let candidates = args(given.pairs, uncertain);
+        launch::striding::<narrow_filter_placed>(device, given.pairs.room() as usize, &candidates)?;
+        launch::striding::<narrow_exact_placed>(device, lanes(left), &args(uncertain, Output::EMPTY))
     }
 }
 

@@ -15,6 +15,7 @@ pub use continuous::{Capacities, ContinuousNarrow};
 pub use discrete::DiscreteNarrow;
 pub use features::Features;
 
+use super::broad::Placeable;
 use super::counts::Counts;
 use super::layout::Layout;
 use super::list::{GrowableOutput, Named};
@@ -45,6 +46,8 @@ pub struct NarrowContext<'a, R: Precision> {
     pub counters: Counters,
     /// Edges, owned features, and candidates; empty without a query of features.
     pub features: &'a Features,
+    /// Meshes and bodies, if candidates are those of instances.
+    pub placeable: Option<Placeable>,
     /// Whether candidates are those of a sample, which gives a bound.
     pub is_sample: bool,
 }

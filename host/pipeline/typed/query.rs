@@ -23,6 +23,9 @@ use std::sync::Arc;
 const PAIRS_A_TRIANGLE: usize = 16;
 /// The same for a query in motion.
 const SWEPT_PAIRS_A_TRIANGLE: usize = 64;
+/// The same of instances, in candidates per body. A heap has 500, bodies that rest on a floor some
+/// dozen.
+const PAIRS_A_BODY: usize = 64;
 /// Least room of every list: a scene of a few triangles may have all pairs.
 const LEAST_ROOM: usize = 1 << 12;
 
@@ -35,6 +38,8 @@ pub struct QueryMemory<R: Precision> {
     records: Buffer<BodyRecord>,
     /// The index of its broad phase.
     pub broad: usize,
+    /// Whether it reads bodies as instances.
+    pub is_of_instances: bool,
     pub counters: FrameCounters,
     pub narrow: Box<dyn Narrow<R>>,
     pub reruns: u64,
@@ -62,18 +67,22 @@ impl<R: Precision> QueryMemory<R> {
     /// # Errors
     /// Device errors.
     pub fn new(scene: &mut SceneMemory<R>, parts: &QueryParts) -> Result<Self, Error> {
-        let QueryParts { layout, query, share, .. } = parts;
+        let QueryParts { layout, query, share, is_of_instances, .. } = parts;
         let device = scene.device.clone();
         let shape = query.shape();
         let triangles = share.of(layout.moving_triangles() as u32).len();
         let a_triangle = if query.kind().is_at_rest() { PAIRS_A_TRIANGLE } else { SWEPT_PAIRS_A_TRIANGLE };
-        let capacity = LEAST_ROOM.max(a_triangle * triangles);
-        let few = LEAST_ROOM.max(4 * triangles);
+        let (capacity, few) = if *is_of_instances {
+            let room = LEAST_ROOM.max(PAIRS_A_BODY * layout.bodies());
+            (room, room)
+        } else {
+            (LEAST_ROOM.max(a_triangle * triangles), LEAST_ROOM.max(4 * triangles))
+        };
         scene.pairs.reserve(&device, capacity)?;
         if query.kind().is_of_features() {
             scene.features.reserve(&device, layout, [capacity, 2 * capacity])?;
         }
-        let broad = scene.broad_of(&shape, query, layout)?;
+        let broad = scene.broad_of(&shape, parts)?;
         let mut narrow = narrow(&device, layout, query, few)?;
         if scene.broads[broad].phase.can_sample() {
             narrow.take_samples(&device)?;
@@ -83,6 +92,7 @@ impl<R: Precision> QueryMemory<R> {
             query: *query,
             records: device.of(purpose::RECORDS).upload(records(layout))?,
             broad,
+            is_of_instances: *is_of_instances,
             counters: FrameCounters::new(&device)?,
             narrow,
             reruns: 0,
@@ -135,7 +145,11 @@ impl<R: Precision> QueryMemory<R> {
             self.narrow.place(bodies);
             self.seen = Some(scene.placings);
         }
-        scene.ready(self.is_at_rest())?;
+        if self.is_of_instances {
+            scene.ready_instances(bodies, &self.layout)?;
+        } else {
+            scene.ready(self.is_at_rest())?;
+        }
         let broad = &mut scene.broads[self.broad];
         let grows = broad.phase.set_margin(growth(self.query.listed_within()));
         broad.is_built &= !grows;
@@ -203,6 +217,7 @@ impl<R: Precision> QueryMemory<R> {
                         bodies: self.records.span(),
                         counters: self.counters.counters(),
                         features: &scene.features,
+                        placeable: scene.broads[self.broad].phase.placeable(),
                         is_sample: matches!(step, Step::Narrow(_, true)),
                     };
                     if let Step::Narrow(at, _) = step {

@@ -5,13 +5,14 @@ use super::Broad;
 use super::query::QueryMemory;
 use crate::device::{Buffer, Device, Event};
 use crate::error::Error;
-use crate::pipeline::Layout;
-use crate::pipeline::broad::{BroadContext, CandidateSearch, broad_phase, growth};
+use crate::pipeline::broad::{BroadContext, CandidateSearch, broad_phase, growth, instance_phase};
+use crate::pipeline::instances::Instances;
 use crate::pipeline::list::List;
 use crate::pipeline::narrow::Features;
-use crate::pipeline::placing::Placing;
+use crate::pipeline::placing::{Moved, Placing};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::purpose;
+use crate::pipeline::{Layout, QueryParts, SceneParts};
 use crate::query::{self, BoundingVolume, Query};
 use crate::scene::Body;
 use nearmiss_kernels::abi::{BodyRecord, Pair, counter};
@@ -23,11 +24,17 @@ pub enum BroadKey {
     Tiles(BoundingVolume, Option<bool>),
     /// Trees, whose walks keep state: all of a query except its numbers.
     Trees(Query),
+    /// Groups of bodies, which are instances of meshes.
+    Instances,
 }
 
 impl BroadKey {
     /// Returns the key of a query of that shape.
-    pub fn of(shape: &Query, layout: &Layout, is_gpu: bool) -> BroadKey {
+    fn of(shape: &Query, parts: &QueryParts, is_gpu: bool) -> BroadKey {
+        let layout = &parts.layout;
+        if parts.is_of_instances {
+            return BroadKey::Instances;
+        }
         if shape.broad_phase_on(is_gpu) == query::BroadPhase::Tree {
             return BroadKey::Trees(*shape);
         }
@@ -40,8 +47,12 @@ impl BroadKey {
 /// The memory of a scene.
 pub struct SceneMemory<R: Precision> {
     pub device: Device,
+    /// Faces and vertices of all bodies; empty if all queries read bodies as instances.
     pub faces: Buffer<[u32; 3]>,
     pub vertices: Placing<R>,
+    has_vertices: bool,
+    /// Meshes and poses, from the first query of instances on.
+    pub instances: Option<Instances>,
     /// Edges, owned features, and candidates of features; empty before the first query of them.
     pub features: Features,
     /// Candidate triangle pairs of the current query.
@@ -56,15 +67,19 @@ pub struct SceneMemory<R: Precision> {
 }
 
 impl<R: Precision> SceneMemory<R> {
-    /// Uploads topology and positions; positions at both ends of the step if a query in motion will
-    /// read them.
+    /// Uploads topology and positions, if a query will read them; positions at both ends of the step
+    /// if a query in motion will.
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(device: Device, layout: &Layout, bodies: &[Body], has_ends: bool) -> Result<Self, Error> {
+    pub fn new(device: Device, bodies: &[Body], parts: &SceneParts) -> Result<Self, Error> {
+        let (nobody, of_faces) = (Layout::nobody(), device.of(purpose::FACES));
+        let (layout, bodies) = if parts.has_vertices { (&*parts.layout, bodies) } else { (&nobody, &[][..]) };
         Ok(SceneMemory {
-            faces: device.of(purpose::FACES).upload(&layout.faces)?,
-            vertices: Placing::new(&device.of(purpose::VERTICES), layout, bodies, has_ends)?,
+            faces: of_faces.upload(&layout.faces)?,
+            vertices: Placing::new(&device.of(purpose::VERTICES), layout, bodies, parts.has_ends)?,
+            has_vertices: parts.has_vertices,
+            instances: None,
             features: Features::none(&device)?,
             pairs: List::new(&device, "candidate triangle pairs", counter::PAIRS, 0)?,
             broads: Vec::new(),
@@ -80,14 +95,41 @@ impl<R: Precision> SceneMemory<R> {
     ///
     /// # Errors
     /// Device errors.
-    pub fn broad_of(&mut self, shape: &Query, query: &Query, layout: &Layout) -> Result<usize, Error> {
-        let key = BroadKey::of(shape, layout, self.device.is_gpu());
+    pub fn broad_of(&mut self, shape: &Query, parts: &QueryParts) -> Result<usize, Error> {
+        let QueryParts { query, layout, .. } = parts;
+        let key = BroadKey::of(shape, parts, self.device.is_gpu());
         if let Some(at) = self.broads.iter().position(|broad| broad.key == key) {
             return Ok(at);
         }
-        let phase = broad_phase(&self.device, layout, query, growth(query.listed_within()))?;
+        let phase = if key == BroadKey::Instances {
+            instance_phase(&self.device, layout)?
+        } else {
+            broad_phase(&self.device, layout, query, growth(query.listed_within()))?
+        };
         self.broads.push(Broad { key, phase, is_built: false });
         Ok(self.broads.len() - 1)
+    }
+
+    /// Moves the named bodies.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn place(&mut self, bodies: &[Body], moved: &[Moved]) -> Result<(), Error> {
+        if self.has_vertices {
+            self.vertices.put(&self.device, bodies, moved)?;
+        }
+        self.instances.as_mut().map_or(Ok(()), |instances| instances.put(bodies))
+    }
+
+    /// Readies meshes and poses for a query of instances.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn ready_instances(&mut self, bodies: &[Body], layout: &Layout) -> Result<(), Error> {
+        if self.instances.is_none() {
+            self.instances = Some(Instances::new(&self.device, bodies, layout)?);
+        }
+        Ok(())
     }
 
     /// Readies positions for a query at one time, or in motion.
@@ -95,7 +137,7 @@ impl<R: Precision> SceneMemory<R> {
     /// # Errors
     /// Device errors.
     pub fn ready(&mut self, at_rest: bool) -> Result<(), Error> {
-        if !self.vertices.is_ready(at_rest) {
+        if self.has_vertices && !self.vertices.is_ready(at_rest) {
             let start = self.device.event()?;
             self.vertices.ready(&self.device.of(purpose::STARTS))?;
             self.placing.push([start, self.device.event()?]);
@@ -115,6 +157,7 @@ impl<R: Precision> SceneMemory<R> {
             faces: self.faces.span(),
             records: query.records(),
             is_submitted: self.is_submitting,
+            instances: self.instances.as_ref(),
         };
         what(&mut *self.broads[query.broad].phase, &given, &query.layout)
     }

@@ -26,6 +26,10 @@ impl Counter {
 /// Rounds of the traversal that may spill; one more, without a budget, ends it.
 pub const ROUNDS: u32 = 4;
 
+/// Levels of nodes above the tiles of a mesh, at most: 2^32 triangles have 2^27 tiles, and a node
+/// has 32 below.
+pub const MESH_LEVELS: u32 = 6;
+
 /// Gives each counter the next place: no two have one.
 macro_rules! counters {
     ($at:expr;) => {
@@ -142,6 +146,14 @@ counters! { 0;
     NEAREST_PAIRS,
     /// Triangle pairs of a step that share a point at t = 0.
     STARTS_CROSSING,
+    /// Pairs of groups of bodies that overlap.
+    GROUP_PAIRS,
+    /// Pairs of bodies whose boxes overlap.
+    BODY_PAIRS,
+    /// Pairs of bodies whose meshes may meet.
+    RELATIONS,
+    /// Pairs of nodes of two bodies that may meet, level by level.
+    NODE_PAIRS: [MESH_LEVELS],
 }
 
 /// The counters of a frame, in device memory.

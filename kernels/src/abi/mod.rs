@@ -7,6 +7,7 @@ mod args;
 pub mod counter;
 pub mod earliest;
 mod flags;
+mod instances;
 mod narrow;
 mod order;
 mod output;
@@ -20,8 +21,9 @@ mod status;
 mod tile;
 
 pub use args::*;
-pub use counter::{Counter, Counters, ROUNDS};
+pub use counter::{Counter, Counters, MESH_LEVELS, ROUNDS};
 pub use flags::*;
+pub use instances::*;
 pub use narrow::*;
 pub use order::*;
 pub use output::Output;

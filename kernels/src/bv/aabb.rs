@@ -21,6 +21,10 @@ const _: () = assert!(fills_node::<Aabb>());
 // SAFETY: asserted above.
 unsafe impl FillsNode for Aabb {}
 
+/// The volume of instances: of meshes in their own frames, and of bodies in the scene. Its image in
+/// another frame is one again, around it. It is not chosen.
+pub type FrameBox = Aabb;
+
 impl Aabb {
     /// Encloses nothing; the neutral element of [`Aabb::merge`].
     pub const EMPTY: Aabb = Aabb { lo: [f32::INFINITY; 3], hi: [f32::NEG_INFINITY; 3] };

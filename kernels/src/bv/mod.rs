@@ -13,7 +13,7 @@ mod group;
 mod linear;
 mod obb;
 
-pub use aabb::Aabb;
+pub use aabb::{Aabb, FrameBox};
 pub use contain::Contain;
 pub use group::{GROUP, Points};
 pub use linear::{Linear, Window};

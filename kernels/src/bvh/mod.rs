@@ -7,6 +7,8 @@ pub mod group;
 pub mod horizon;
 pub mod leaf;
 pub mod on_chip;
+pub mod pieces;
+pub mod relation;
 pub mod rims;
 pub mod tiles;
 

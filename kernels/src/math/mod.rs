@@ -2,6 +2,7 @@
 
 pub mod ordered;
 mod real;
+pub mod rigid;
 pub mod root;
 pub mod round;
 pub mod tolerance;

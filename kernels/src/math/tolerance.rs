@@ -342,6 +342,27 @@ pub const BOX_LIMIT: f32 = f32::from_bits((120 + 127) << 23);
 /// An entry off the diagonal of a covariance below which it counts as zero; the largest entry is 1.
 /// `2^-40`: far below the roundings of the others, and its square does not underflow. Ratio.
 pub const COVARIANCE_ZERO: f32 = f32::from_bits((127 - 40) << 23);
+/// Error of a vertex or a volume of one rigid body in the frame of another: `32u` of f32. Relative
+/// to the sum of both radii and of the sizes of the coordinates of one centre in the other frame.
+/// Derived in `bvh::relation`. Ratio.
+pub const RELATIVE_SLACK: f64 = 32.0 * U32 as f64;
+/// The same for the roundings of placing: `16U` of f64. Relative to the sum of the sizes of all
+/// coordinates of both translations and of both meshes' centres. Ratio.
+pub const RELATIVE_FAR: f64 = 16.0 * U64;
+/// Largest reach of two bodies, radii and distance, for which frames are computed: `2^100`. Beyond
+/// it every volume overlaps every other. Sums stay finite. Length.
+pub const RELATIVE_LIMIT: f64 = f64::from_bits((1023 + 100) << 52);
+/// Factor of that error for a difference of heights in a direction: the error itself, and `12u` of
+/// the reach, of which it has `32u`. Derived in `prim::planes`. Ratio.
+pub const PLANE_SLACK: f32 = 2.0;
+/// Allowance of heights below which none of them overflows: `2^100`. Heights are at most `2^18` of
+/// it. Length cubed.
+pub const PLANE_LIMIT: f32 = f32::from_bits((100 + 127) << 23);
+/// Growth of a placed body's box: `64U` of f64. Relative to the radius and the sizes of the
+/// coordinates of translation and centre. Placing takes `2U`, `14U` and `7U` of them
+/// (`bvh::relation`); centre and half extents of the box are three products and four sums each, `38U`
+/// of the radius, `8U` of the others. Ratio.
+pub const PLACED_BOX: f64 = 64.0 * U64;
 /// A cell is tested again before the others if decoupling directions remove more than this part of
 /// a range. Ratio; a cost, not part of a proof.
 pub const INCLUSION_DEEP: f64 = 0.5;

@@ -5,6 +5,7 @@
 //! | [`moller`] | discrete, in plain floats; the paper's | can miss |
 //! | [`tri_tri`] on signs of [`orient`] | discrete, floats with a bound | right or uncertain |
 //! | [`at_once`], all of those signs | discrete, floats with a bound | right or uncertain |
+//! | [`planes`], in f32 with an error | discrete | apart or uncertain |
 //! | [`tri_tri`] on signs of [`exact`] | discrete, in integers | always right |
 //! | [`cubic`] | continuous, the coplanarity cubic; the paper's | can miss |
 //! | [`isolate`] | continuous, in closed form | no miss, never late |
@@ -27,6 +28,7 @@ pub mod moller;
 pub mod near;
 pub mod nearest;
 pub mod orient;
+pub mod planes;
 mod poly;
 pub mod signs;
 pub mod stencil;

@@ -27,21 +27,13 @@ use crate::abi::{
 use crate::bvh::filter::holder;
 use crate::exec::{Block, Lane};
 use crate::math::tolerance::POSE_UNIT;
-use crate::math::{Real, Vec3};
+use crate::math::{Real, Vec3, rigid};
 
 /// The image of a point under a pose: `R v + t`, by these operations in f64 and in this order on
 /// every machine.
 #[inline(always)]
 pub fn moved(pose: &PoseRecord, p: Vec3<f64>) -> Vec3<f64> {
-    let [x, y, z, w] = pose.rotation;
-    let rows = [
-        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
-        [2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w)],
-        [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)],
-    ];
-    let coordinate =
-        |k: usize| rows[k][0] * p[0] + rows[k][1] * p[1] + rows[k][2] * p[2] + pose.translation[k];
-    Vec3([coordinate(0), coordinate(1), coordinate(2)])
+    rigid::moved(&rigid::rows(pose.rotation), &pose.translation, p)
 }
 
 /// The same of a point at rest.

@@ -127,6 +127,7 @@ impl<R: Precision> Run<'_, R> {
             bodies: Span::EMPTY,
             counters: self.counters.counters(),
             features: &self.features,
+            placeable: None,
             is_sample: false,
         };
         let start = self.device.event()?;

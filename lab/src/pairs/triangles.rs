@@ -104,6 +104,7 @@ fn some<R: Precision>(device: &Device, mesh: &Mesh, test: TriangleTest) -> Resul
             bodies: Span::EMPTY,
             counters: counters.counters(),
             features: &features,
+            placeable: None,
             is_sample: false,
         };
         let start = device.event()?;

@@ -46,6 +46,7 @@ fn checked_of(bodies: &[Body], fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), E
         faces: faces.span(),
         records: records.span(),
         is_submitted: false,
+        instances: None,
     };
     let mut tiles = Tiles::<Aabb>::new(&device, &layout, 0.01)?;
     tiles.construct(&given, &layout)?;

@@ -213,7 +213,7 @@ impl<V: Kernels> Tiles<V> {
 }
 
 /// Lists pairs of tiles, then their pairs of triangles.
-fn walk<V, Pairs, Triangles>(
+pub(super) fn walk<V, Pairs, Triangles>(
     device: &Device,
     (pairs, triangles): (&TilePairsArgs<V>, &TileTrianglesArgs<V>),
 ) -> Result<(), Error>

@@ -4,12 +4,14 @@
 //! | file | broad phase | writes volumes of | used |
 //! | --- | --- | --- | --- |
 //! | [`tiles`] | tiles: **the default** | triangles, tiles, nodes above tiles | each frame |
+//! | [`bodies`] | instances | bodies, groups, nodes above groups | each frame of rigid scenes |
 //! | [`rims`] | tiles | edges opposite to hubs | if adjacent pairs are kept |
 //! | [`leaves`] | trees, the paper's | leaves | by the refit by level |
 //! | [`leaves`] `groups` | trees | nodes with few leaves | by oriented boxes |
 //!
 //! The refit by treelets fits its leaves itself: see [`crate::stage::refit`].
 
+pub mod bodies;
 pub mod leaves;
 pub mod rims;
 pub mod tiles;

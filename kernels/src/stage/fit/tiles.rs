@@ -13,7 +13,7 @@
 //!          or 64 B, contiguous.
 //!          Nine rounds on chip.
 
-use crate::abi::{FitTilesArgs, LEAF, NONE, Node};
+use crate::abi::{FitTilesArgs, LEAF, NONE, Node, Span};
 use crate::bv::Volume;
 use crate::bvh::leaf;
 use crate::bvh::on_chip::OnChip;
@@ -31,16 +31,43 @@ pub const fn shared_bytes<V: Volume>() -> u32 {
 
 /// Volumes of triangles, of tiles and of the nodes above them.
 pub fn tiles<R: Real, V: Volume, B: Block>(block: &mut B, args: &FitTilesArgs<R, V>) {
+    let to = Fitted {
+        items: args.triangles,
+        leaves: args.leaves,
+        nodes: args.nodes,
+        tile: args.tile,
+        above: args.above,
+    };
+    fit(block, &to, |lane, triangle| leaf::volume(lane, &args.frames, args.faces, triangle, args.margin));
+}
+
+/// Items in order, and their nodes.
+pub struct Fitted<V> {
+    /// Items in order: the lower halves.
+    pub items: Span<u64>,
+    /// Out: their volumes, in order.
+    pub leaves: Span<Node<V>>,
+    /// Out: tiles, and nodes above them.
+    pub nodes: Span<Node<V>>,
+    /// The first tile.
+    pub tile: u32,
+    /// The first node above tiles.
+    pub above: u32,
+}
+
+/// Volumes of items, of tiles and of the nodes above them. Behind the last item it is there again.
+#[inline(always)]
+pub fn fit<V: Volume, B: Block>(block: &mut B, to: &Fitted<V>, mut of: impl FnMut(&B::Lane, u32) -> V) {
     let chip = OnChip::new::<V, B>(block, LANES);
     let mut volumes = block.slot(V::zeroed());
-    let (index, count) = (block.block(), args.triangles.len() as u32);
+    let (index, count) = (block.block(), to.items.len() as u32);
     block.phase(|lane| {
         let place = index * LANES + lane.lane();
-        let triangle = lane.read(args.triangles, place.min(count - 1)) as u32;
-        let volume: V = leaf::volume(lane, &args.frames, args.faces, triangle, args.margin);
-        let leaf = args.tile * TILE + place;
-        let link = if place < count { LEAF | triangle } else { NONE };
-        lane.write(args.leaves, leaf, Node { volume, link, last: leaf });
+        let item = lane.read(to.items, place.min(count - 1)) as u32;
+        let volume: V = of(lane, item);
+        let leaf = to.tile * TILE + place;
+        let link = if place < count { LEAF | item } else { NONE };
+        lane.write(to.leaves, leaf, Node { volume, link, last: leaf });
         chip.put(lane, lane.lane(), volume);
         *volumes.of(lane) = volume;
     });
@@ -48,18 +75,18 @@ pub fn tiles<R: Real, V: Volume, B: Block>(block: &mut B, args: &FitTilesArgs<R,
     block.phase(|lane| {
         if lane.lane().is_multiple_of(TILE) {
             let place = index * FAN + lane.lane() / TILE;
-            let tile = args.tile + place;
+            let tile = to.tile + place;
             let link = if place * TILE < count { LEAF | tile } else { NONE };
-            lane.write(args.nodes, tile, Node { volume: *volumes.of(lane), link, last: tile });
+            lane.write(to.nodes, tile, Node { volume: *volumes.of(lane), link, last: tile });
         }
         lane.meet();
     });
     chip.merge(block, &mut volumes, FAN, TILE);
     block.phase(|lane| {
         if lane.lane() == 0 {
-            let tile = args.tile + index * FAN;
+            let tile = to.tile + index * FAN;
             let node = Node { volume: *volumes.of(lane), link: tile, last: tile + FAN - 1 };
-            lane.write(args.nodes, args.above + index, node);
+            lane.write(to.nodes, to.above + index, node);
         }
         lane.meet();
     });

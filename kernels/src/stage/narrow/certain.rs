@@ -32,13 +32,14 @@ pub const SHARED: u32 = 4 * TOGETHER * LANES_A_PAIR;
 const UNKNOWN: u32 = 3;
 
 /// Signs in f64, for pairs that f32 left uncertain.
-pub fn wide<F: Frame<f32>, B: Block>(block: &mut B, args: &DiscreteArgs<f32>) {
-    let count = args.pairs.listed(block);
-    if are_few(args, count) {
+pub fn wide<F: Frame<f32>, B: Block>(block: &mut B, args: &F::Args) {
+    let lists = F::lists(args);
+    let count = lists.pairs.listed(block);
+    if are_few(lists, count) {
         return of_few::<f32, F, Wide, B>(block, args, count, |lane, pair, verdict| match verdict {
-            Some(true) => args.contacts.push(lane, pair),
+            Some(true) => lists.contacts.push(lane, F::contact(lane, args, pair)),
             Some(false) => {}
-            None => args.uncertain.push(lane, pair),
+            None => lists.uncertain.push(lane, pair),
         });
     }
     let mut verdicts = block.slot((Pair::default(), Some(false)));
@@ -58,9 +59,10 @@ pub fn wide<F: Frame<f32>, B: Block>(block: &mut B, args: &DiscreteArgs<f32>) {
             };
             lane.meet();
         });
-        sort_out(block, args, &mut entries, |lane, is_meeting| {
+        sort_out(block, lists, &mut entries, |lane, is_meeting| {
             let (pair, found) = *verdicts.of(lane);
-            (found == is_meeting.then_some(true)).then_some(pair)
+            let is_mine = found == is_meeting.then_some(true);
+            is_mine.then(|| if is_meeting { F::contact(lane, args, pair) } else { pair })
         });
     });
 }
@@ -73,19 +75,21 @@ fn beyond(p: [Vec3<f32>; 3], q: [Vec3<f32>; 3], shared: Shared) -> Option<bool> 
 }
 
 /// Exact signs, for the pairs that the filters left uncertain: some thousand operations each.
-pub fn exact<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &DiscreteArgs<R>) {
-    let count = args.pairs.listed(block);
+pub fn exact<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &F::Args) {
+    let lists = F::lists(args);
+    let count = lists.pairs.listed(block);
     // `Certain` always answers; were it not to, the pair stays.
-    if are_few(args, count) {
+    if are_few(lists, count) {
         return of_few::<R, F, Certain, B>(block, args, count, |lane, pair, verdict| {
             if verdict != Some(false) {
-                args.contacts.push(lane, pair);
+                lists.contacts.push(lane, F::contact(lane, args, pair));
             }
         });
     }
-    append_each(block, count, args.contacts, |lane, i| {
+    append_each(block, count, lists.contacts, |lane, i| {
         let (pair, [p, q], shared) = given::<R, F, _>(lane, args, i);
-        (meets_beyond_shared::<R, Certain>(&p, &q, shared) != Some(false)).then_some(pair)
+        let meets = meets_beyond_shared::<R, Certain>(&p, &q, shared) != Some(false);
+        meets.then(|| F::contact(lane, args, pair))
     });
 }
 
@@ -100,11 +104,11 @@ fn are_few<R: Real>(args: &DiscreteArgs<R>, count: u32) -> bool {
 #[inline(always)]
 fn of_few<R: Real, F: Frame<R>, S: Signs<R>, B: Block>(
     block: &mut B,
-    args: &DiscreteArgs<R>,
+    args: &F::Args,
     count: u32,
     take: impl Fn(&B::Lane, Pair, Option<bool>),
 ) {
-    let lanes = block.lanes();
+    let (lanes, pairs) = (block.lanes(), F::lists(args).pairs);
     let signs = block.shared::<u32>(TOGETHER * LANES_A_PAIR);
     let mut base = block.block() * TOGETHER;
     while base < count {
@@ -114,9 +118,10 @@ fn of_few<R: Real, F: Frame<R>, S: Signs<R>, B: Block>(
             while i < some * LANES_A_PAIR {
                 let which = i % LANES_A_PAIR;
                 if which < SIGNS {
-                    let [p, q] = faces(lane, args, args.pairs.get(lane, base + i / LANES_A_PAIR));
+                    let pair = pairs.get(lane, base + i / LANES_A_PAIR);
+                    let [p, q] = F::triangles(lane, args, pair);
                     let [a, b, c, d] = points_of_sign(p, q, which);
-                    let at = |vertex| F::at(lane, &args.frames, vertex);
+                    let at = |vertex| F::at(lane, args, vertex);
                     let sign = S::orient3d(at(a), at(b), at(c), at(d));
                     lane.put(signs, i, sign.map_or(UNKNOWN, |sign| (sign + 1) as u32));
                 }
@@ -129,14 +134,15 @@ fn of_few<R: Real, F: Frame<R>, S: Signs<R>, B: Block>(
             while i < some {
                 let sign = |k: usize| lane.get(signs, i * LANES_A_PAIR + k as u32);
                 let all: [u32; SIGNS as usize] = core::array::from_fn(sign);
-                let pair = args.pairs.get(lane, base + i);
+                let pair = pairs.get(lane, base + i);
                 let known =
                     if all.contains(&UNKNOWN) { None } else { decided(&all.map(|sign| sign as i32 - 1)) };
                 take(
                     lane,
                     pair,
                     known.or_else(|| {
-                        let [p, q] = faces(lane, args, pair).map(|face| corners::<R, F, _>(lane, args, face));
+                        let [p, q] =
+                            F::triangles(lane, args, pair).map(|face| corners::<R, F, _>(lane, args, face));
                         one_by_one::<R, S>(p, q)
                     }),
                 );
@@ -154,20 +160,14 @@ fn one_by_one<R: Real, S: Signs<R>>(p: [Vec3<R>; 3], q: [Vec3<R>; 3]) -> Option<
     meets::<R, S>(&p, &q)
 }
 
-/// Vertex indices of two triangles.
-#[inline(always)]
-fn faces<R: Real, L: Lane>(lane: &L, args: &DiscreteArgs<R>, pair: Pair) -> [[u32; 3]; 2] {
-    [lane.read(args.faces, pair.a), lane.read(args.faces, pair.b)]
-}
-
 /// A pair, its corners, and their shared vertices.
 #[inline(always)]
 fn given<R: Real, F: Frame<R>, L: Lane>(
     lane: &L,
-    args: &DiscreteArgs<R>,
+    args: &F::Args,
     i: u32,
 ) -> (Pair, [[Vec3<R>; 3]; 2], Shared) {
-    let pair = args.pairs.get(lane, i);
-    let [p, q] = faces(lane, args, pair);
-    (pair, [corners::<R, F, _>(lane, args, p), corners::<R, F, _>(lane, args, q)], Shared::by_index(p, q))
+    let pair = F::lists(args).pairs.get(lane, i);
+    let [p, q] = F::triangles(lane, args, pair);
+    (pair, [corners::<R, F, _>(lane, args, p), corners::<R, F, _>(lane, args, q)], F::shared(p, q))
 }

@@ -25,7 +25,7 @@
 //!          branches; on a CPU in vectors.
 
 use super::{Entries, append_each, expect, sort_out};
-use crate::abi::{DiscreteArgs, DiscreteFlags, Pair, Positions};
+use crate::abi::{DiscreteArgs, DiscreteFlags, Pair};
 use crate::exec::{Block, Lane, OPEN, RowMap, Slot};
 use crate::math::{Real, Vec3};
 use crate::prim::adjacent::{Shared, share_a_vertex};
@@ -35,68 +35,110 @@ use crate::prim::tri_tri::parted;
 use crate::queue::waiting::{Waiting, waiting_bytes};
 use core::marker::PhantomData;
 
-/// The positions to read, and the first test of a pair of triangles.
+/// How the triangles of pairs are read, and their first test.
 pub trait Frame<R: Real> {
+    /// Arguments of the kernels.
+    type Args;
+    /// The name of a vertex.
+    type Corner: Copy;
     /// Whether pairs with a common vertex are among the candidates and are left out.
     const LEAVES_OUT_ADJACENT: bool;
+    /// The lists, and the flags of the test.
+    fn lists(args: &Self::Args) -> &DiscreteArgs<R>;
+    /// The triangles of a pair will be read soon.
+    fn expect_pair<L: Lane>(lane: &L, args: &Self::Args, pair: Pair);
+    /// The corners of both triangles of a pair.
+    fn triangles<L: Lane>(lane: &L, args: &Self::Args, pair: Pair) -> [[Self::Corner; 3]; 2];
+    /// The common vertices of two triangles.
+    fn shared(p: [Self::Corner; 3], q: [Self::Corner; 3]) -> Shared;
+    /// Whether there are any.
+    fn share_a_vertex(p: [Self::Corner; 3], q: [Self::Corner; 3]) -> bool;
     /// A vertex will be read soon.
-    fn expect<L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32);
+    fn expect<L: Lane>(lane: &L, args: &Self::Args, corner: Self::Corner);
     /// Reads a vertex.
-    fn at<L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32) -> Vec3<R>;
+    fn at<L: Lane>(lane: &L, args: &Self::Args, corner: Self::Corner) -> Vec3<R>;
     /// Whether two triangles are apart, by a test without branches that holds for most pairs. False
     /// proves nothing.
     fn are_apart(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> bool;
+    /// A pair as a contact: the numbers of its triangles, the smaller first.
+    fn contact<L: Lane>(lane: &L, args: &Self::Args, pair: Pair) -> Pair;
 }
 
 /// Nothing moves. Candidates overlap here; most are parted by a plane.
 pub struct Still;
 
-impl<R: Real> Frame<R> for Still {
-    const LEAVES_OUT_ADJACENT: bool = false;
-    #[inline(always)]
-    fn expect<L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32) {
-        lane.expect(frames.still, vertex);
-    }
-    #[inline(always)]
-    fn at<L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32) -> Vec3<R> {
-        lane.read(frames.still, vertex).at
-    }
-    #[inline(always)]
-    fn are_apart(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> bool {
-        parted(p, q)
-    }
-}
-
 /// The start of a step. Candidates overlap at some time of it; the boxes of most are apart here.
 pub struct Start;
 
-impl<R: Real> Frame<R> for Start {
-    const LEAVES_OUT_ADJACENT: bool = true;
-    #[inline(always)]
-    fn expect<L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32) {
-        lane.expect(frames.moving, vertex);
-    }
-    #[inline(always)]
-    fn at<L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32) -> Vec3<R> {
-        lane.read(frames.moving, vertex).t0.at
-    }
-    #[inline(always)]
-    fn are_apart(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> bool {
-        let ends = |[x, y, z]: &[Vec3<R>; 3]| [x.lesser(*y).lesser(*z), x.greater(*y).greater(*z)];
-        let ([p_lo, p_hi], [q_lo, q_hi]) = (ends(p), ends(q));
-        let apart = |k: usize| (p_hi[k] < q_lo[k]) | (q_hi[k] < p_lo[k]);
-        apart(0) | apart(1) | apart(2)
-    }
+/// Pairs that name triangles of the scene, whose vertices are in memory.
+macro_rules! in_memory {
+    ($Frame:ident, $leaves_out:literal, $of:ident, |$found:ident| $at:expr, $apart:expr) => {
+        impl<R: Real> Frame<R> for $Frame {
+            type Args = DiscreteArgs<R>;
+            type Corner = u32;
+            const LEAVES_OUT_ADJACENT: bool = $leaves_out;
+            #[inline(always)]
+            fn lists(args: &DiscreteArgs<R>) -> &DiscreteArgs<R> {
+                args
+            }
+            #[inline(always)]
+            fn expect_pair<L: Lane>(lane: &L, args: &DiscreteArgs<R>, pair: Pair) {
+                lane.expect(args.faces, pair.a);
+                lane.expect(args.faces, pair.b);
+            }
+            #[inline(always)]
+            fn triangles<L: Lane>(lane: &L, args: &DiscreteArgs<R>, pair: Pair) -> [[u32; 3]; 2] {
+                [lane.read(args.faces, pair.a), lane.read(args.faces, pair.b)]
+            }
+            #[inline(always)]
+            fn shared(p: [u32; 3], q: [u32; 3]) -> Shared {
+                Shared::by_index(p, q)
+            }
+            #[inline(always)]
+            fn share_a_vertex(p: [u32; 3], q: [u32; 3]) -> bool {
+                share_a_vertex(p, q)
+            }
+            #[inline(always)]
+            fn expect<L: Lane>(lane: &L, args: &DiscreteArgs<R>, vertex: u32) {
+                lane.expect(args.frames.$of, vertex);
+            }
+            #[inline(always)]
+            fn at<L: Lane>(lane: &L, args: &DiscreteArgs<R>, vertex: u32) -> Vec3<R> {
+                let $found = lane.read(args.frames.$of, vertex);
+                $at
+            }
+            #[inline(always)]
+            fn are_apart(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> bool {
+                $apart(p, q)
+            }
+            #[inline(always)]
+            fn contact<L: Lane>(_: &L, _: &DiscreteArgs<R>, pair: Pair) -> Pair {
+                pair
+            }
+        }
+    };
+}
+
+in_memory!(Still, false, still, |found| found.at, parted);
+in_memory!(Start, true, moving, |found| found.t0.at, boxes_apart);
+
+/// Whether the boxes of two triangles are apart.
+#[inline(always)]
+fn boxes_apart<R: Real>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> bool {
+    let ends = |[x, y, z]: &[Vec3<R>; 3]| [x.lesser(*y).lesser(*z), x.greater(*y).greater(*z)];
+    let ([p_lo, p_hi], [q_lo, q_hi]) = (ends(p), ends(q));
+    let apart = |k: usize| (p_hi[k] < q_lo[k]) | (q_hi[k] < p_lo[k]);
+    apart(0) | apart(1) | apart(2)
 }
 
 /// The corners of a triangle.
 #[inline(always)]
 pub fn corners<R: Real, F: Frame<R>, L: Lane>(
     lane: &L,
-    args: &DiscreteArgs<R>,
-    face: [u32; 3],
+    args: &F::Args,
+    face: [F::Corner; 3],
 ) -> [Vec3<R>; 3] {
-    face.map(|vertex| F::at(lane, &args.frames, vertex))
+    [F::at(lane, args, face[0]), F::at(lane, args, face[1]), F::at(lane, args, face[2])]
 }
 
 /// The paper's test (Möller), in f32.
@@ -160,8 +202,9 @@ pub const fn shared_bytes(lanes: u32) -> u32 {
 
 /// Signs with an error bound, in the precision of the positions: contacts, and uncertain pairs.
 /// Most pairs are separated by a plane. The others wait until there is one a lane.
-pub fn filter<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &DiscreteArgs<R>) {
-    let (count, lanes) = (args.pairs.listed(block), block.lanes());
+pub fn filter<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &F::Args) {
+    let lists = F::lists(args);
+    let (count, lanes) = (lists.pairs.listed(block), block.lanes());
     let later = block.blocks() * lanes;
     let mut waiting = Waiting::new(block);
     let mut decision = Decision::new(block);
@@ -176,16 +219,13 @@ pub fn filter<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &DiscreteArgs
                 if i >= count {
                     return None;
                 }
-                let pair = args.pairs.get(lane, i);
-                let faces = [lane.read(args.faces, pair.a), lane.read(args.faces, pair.b)];
-                expect(lane, &args.pairs, i + later, count, |pair| {
-                    lane.expect(args.faces, pair.a);
-                    lane.expect(args.faces, pair.b);
-                });
-                if F::LEAVES_OUT_ADJACENT && share_a_vertex(faces[0], faces[1]) {
+                let pair = lists.pairs.get(lane, i);
+                let faces = F::triangles(lane, args, pair);
+                expect(lane, &lists.pairs, i + later, count, |pair| F::expect_pair(lane, args, pair));
+                if F::LEAVES_OUT_ADJACENT && F::share_a_vertex(faces[0], faces[1]) {
                     return None;
                 }
-                faces.into_iter().flatten().for_each(|vertex| F::expect(lane, &args.frames, vertex));
+                faces.into_iter().flatten().for_each(|vertex| F::expect(lane, args, vertex));
                 Some((pair, faces[0], faces[1]))
             },
             |lane, (_, p, q)| rows::<R, F, _>(lane, args, p, q),
@@ -212,12 +252,12 @@ pub fn filter<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &DiscreteArgs
 #[inline(always)]
 fn rows<R: Real, F: Frame<R>, L: Lane>(
     lane: &L,
-    args: &DiscreteArgs<R>,
-    p: [u32; 3],
-    q: [u32; 3],
+    args: &F::Args,
+    p: [F::Corner; 3],
+    q: [F::Corner; 3],
 ) -> Option<[[Vec3<R>; 3]; 2]> {
     let is_beyond_shared =
-        args.flags.has(DiscreteFlags::KEEP_ADJACENT) && Shared::by_index(p, q) != Shared::Nothing;
+        F::lists(args).flags.has(DiscreteFlags::KEEP_ADJACENT) && F::shared(p, q) != Shared::Nothing;
     (!is_beyond_shared).then(|| [corners::<R, F, _>(lane, args, p), corners::<R, F, _>(lane, args, q)])
 }
 
@@ -237,7 +277,7 @@ impl<B: Block> Decision<B> {
     fn run<R: Real, F: Frame<R>>(
         &mut self,
         block: &mut B,
-        args: &DiscreteArgs<R>,
+        args: &F::Args,
         waiting: &Waiting<B>,
         from: u32,
         some: u32,
@@ -246,8 +286,8 @@ impl<B: Block> Decision<B> {
             &Meet::<R>(PhantomData),
             |lane| (lane.lane() < some).then(|| waiting.get(lane, from + lane.lane())),
             |lane, pair| {
-                let face = |triangle| lane.read(args.faces, triangle);
-                rows::<R, F, _>(lane, args, face(pair.a), face(pair.b))
+                let [p, q] = F::triangles(lane, args, pair);
+                rows::<R, F, _>(lane, args, p, q)
             },
             |lane, result| {
                 *self.pairs.of(lane) = result.unwrap_or((Pair::default(), APART));
@@ -255,10 +295,13 @@ impl<B: Block> Decision<B> {
             },
         );
         // Pairs that are tested beyond their common corners have no row, and are `OPEN`.
-        sort_out(block, args, &mut self.entries, |lane, is_meeting| {
+        sort_out(block, F::lists(args), &mut self.entries, |lane, is_meeting| {
             let (pair, found) = *self.pairs.of(lane);
-            let is_mine = if is_meeting { found == MEET } else { (found == LEFT) | (found == OPEN) };
-            is_mine.then_some(pair)
+            if is_meeting {
+                (found == MEET).then(|| F::contact(lane, args, pair))
+            } else {
+                ((found == LEFT) | (found == OPEN)).then_some(pair)
+            }
         });
     }
 }

@@ -4,7 +4,7 @@
 //!
 //! | query | steps |
 //! | --- | --- |
-//! | discrete | [`discrete`], [`certain`] |
+//! | discrete | [`discrete`], [`certain`]; of instances by [`placed`] |
 //! | continuous, earliest | the same at t = 0, [`features`], [`cull`], then a solver |
 //! | near | [`features`], [`near`] |
 //! | distance | [`discrete`], [`certain`], [`mod@nearest`] |
@@ -26,6 +26,7 @@ pub mod discrete;
 pub mod features;
 pub mod near;
 pub mod nearest;
+pub mod placed;
 pub mod separate;
 pub mod slice;
 pub mod solve;

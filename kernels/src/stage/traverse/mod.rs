@@ -8,6 +8,7 @@
 //! | file | broad phase | used | source |
 //! | --- | --- | --- | --- |
 //! | [`tiles`], [`tile_triangles`] | tiles | **the default** (1) | not in the paper |
+//! | [`instances`] | instances | **the default** of discrete queries of rigid scenes | not in the paper |
 //! | [`per_leaf`] | trees | default of trees on a CPU; on a GPU of `Aabb` (2) | Karras 2012 |
 //! | [`queue`] | trees | default of trees on a GPU, other volumes (2) | section 6.2 |
 //! | [`steal`] | trees | on request | departs from section 6.2 |
@@ -27,6 +28,7 @@
 //! pairs of nodes: fewer tests, which pays for costly volumes.
 
 pub mod front;
+pub mod instances;
 pub mod nearest;
 pub mod per_leaf;
 pub mod queue;

@@ -1,0 +1,52 @@
+//! Chooses how discrete queries read rigid and fixed bodies: as instances of their meshes, or by
+//! vertices in the scene.
+
+use super::Detector;
+use crate::pipeline::Share;
+use crate::query::Query;
+use crate::scene::{Body, BodyKind};
+
+impl Detector {
+    /// Whether the scene's bodies can be read as instances. All bodies with triangles must be rigid
+    /// or fixed, with poses that the host has, and none is tested against itself. Shares, slices and
+    /// submissions read vertices.
+    fn allows_instances(&self) -> bool {
+        let bodies = self.scene.bodies();
+        let mut solid = bodies.iter().filter(|body| body.face_count() > 0);
+        let is_whole =
+            self.portion.share == Share::WHOLE && !self.portion.is_part && !self.portion.has_slices();
+        is_whole
+            && !self.engine.submits
+            && solid.clone().any(|body| body.kind() == BodyKind::Rigid)
+            && solid.all(|body| body.kind() != BodyKind::Deformable && !body.self_collides())
+            && !bodies.iter().any(Body::is_device_resident)
+    }
+
+    /// Chooses for the next pipeline.
+    pub(super) fn choose_instances(&mut self) {
+        self.engine.has_instances = self.allows_instances();
+        self.engine.has_vertices |= !self.engine.has_instances;
+    }
+
+    /// Returns whether a query reads instances. If it reads vertices and the pipeline has none, the
+    /// next pipeline will have them: the host has every pose.
+    pub(super) fn reads_instances(&mut self, query: &Query) -> bool {
+        if self.engine.pipeline.is_none() {
+            self.choose_instances();
+        }
+        let reads = self.engine.has_instances && query.may_read_instances();
+        if !reads && !self.engine.has_vertices {
+            self.engine.drop_pipeline();
+            self.engine.has_vertices = true;
+        }
+        reads
+    }
+
+    /// Makes all queries read vertices from now on, for submissions. A pipeline of instances has no
+    /// position that the host has not.
+    pub(super) fn begin_submissions(&mut self) {
+        if !std::mem::replace(&mut self.engine.submits, true) && self.engine.has_instances {
+            self.engine.drop_pipeline();
+        }
+    }
+}

@@ -1,0 +1,300 @@
+//! Instances: candidates of rigid and fixed bodies by the tiles of their meshes, which never change.
+//!
+//! Bodies take the place of triangles in the search of [`super::tiles`]: groups of 32 along a curve,
+//! and nodes above them. Pairs of bodies then go down both meshes, a launch a level.
+
+mod groups;
+
+use super::tiles::walk;
+use super::{BroadContext, CandidateSearch, Candidates, Placeable, broken};
+use crate::device::Device;
+use crate::error::Error;
+use crate::pipeline::counts::Counts;
+use crate::pipeline::instances::Instances;
+use crate::pipeline::launch;
+use crate::pipeline::layout::Layout;
+use crate::pipeline::list::{GrowableOutput, List};
+use crate::pipeline::precision::Precision;
+use groups::Groups;
+use nearmiss_kernels::abi::{
+    Counters, InstanceTables, InstancesArgs, MESH_LEVELS, NodePair, NodesArgs, Output, Pair, Relation,
+    RelationsArgs, Span, TilePairsArgs, TileTrianglesArgs, TraverseFlags, counter,
+};
+use nearmiss_kernels::bv::{Contain, FrameBox};
+use nearmiss_kernels::bvh::Violation;
+use nearmiss_kernels::entry::{self, Entry};
+use nearmiss_kernels::math::Vec3;
+use xxhash_rust::xxh3::xxh3_64;
+
+/// Initial capacities: pairs of groups a group, pairs of bodies a body, pairs of tiles a body. Lists
+/// that are too short grow within the frame.
+const GROUP_PAIRS_A_GROUP: usize = 16;
+const PAIRS_A_BODY: usize = 8;
+const TILE_PAIRS_A_BODY: usize = 32;
+/// Least room of every list.
+const LEAST_ROOM: usize = 1 << 10;
+/// How often a GPU is filled with blocks of a warp, which end at different times.
+const TURNS: u32 = 3;
+/// Bodies are put in order again when pairs of groups exceed the first ones by a quarter, and by so
+/// many. A cost; no answer depends on it.
+const STALE: u64 = 64;
+
+/// Bodies in groups, and the lists down to candidates.
+pub struct BodyGroups {
+    groups: Groups,
+    group_pairs: List<Pair>,
+    body_pairs: List<Pair>,
+    relations: List<Relation>,
+    /// Pairs of nodes after each level but the last.
+    node_pairs: Vec<List<NodePair>>,
+    tile_pairs: List<NodePair>,
+    /// Meshes and bodies of the last traversal.
+    tables: Option<InstanceTables>,
+    /// Pairs of groups of the first frame in this order, and whether later ones exceed them.
+    first: Option<u64>,
+    is_stale: bool,
+}
+
+impl BodyGroups {
+    /// Allocates groups over the bodies of a layout. At least one body moves.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn new(device: &Device, layout: &Layout) -> Result<Self, Error> {
+        let groups = Groups::new(device, layout)?;
+        let bodies = layout.trees.iter().map(Vec::len).sum::<usize>();
+        let room = |each: usize| LEAST_ROOM.max(each * bodies);
+        let own = LEAST_ROOM.max(GROUP_PAIRS_A_GROUP * groups.moving() as usize);
+        Ok(BodyGroups {
+            group_pairs: List::new(device, "pairs of groups of bodies", counter::GROUP_PAIRS, own)?,
+            body_pairs: List::new(device, "pairs of bodies", counter::BODY_PAIRS, room(PAIRS_A_BODY))?,
+            relations: List::new(device, "related bodies", counter::RELATIONS, room(PAIRS_A_BODY))?,
+            node_pairs: Vec::new(),
+            tile_pairs: List::new(device, "pairs of tiles", counter::TILE_PAIRS, room(TILE_PAIRS_A_BODY))?,
+            tables: None,
+            first: None,
+            is_stale: false,
+            groups,
+        })
+    }
+
+    /// Lists pairs of bodies whose boxes overlap.
+    fn pairs_of_bodies<R: Precision>(
+        &self,
+        given: &BroadContext<R>,
+        counters: Counters,
+    ) -> Result<Output<Pair>, Error> {
+        let groups = &self.groups;
+        let (filters, to) = (groups.filters(given.records), groups.moving());
+        let tile_pairs = self.group_pairs.output(counters);
+        let pairs = self.body_pairs.output(counters);
+        let (top, tops, shift) = groups.top();
+        let of_groups = TilePairsArgs::<FrameBox> {
+            nodes: groups.nodes(),
+            filters,
+            rims: Span::EMPTY,
+            tile_pairs,
+            counters,
+            top,
+            tops,
+            shift,
+            from: 0,
+            to,
+            every: 1,
+            known: Span::EMPTY,
+        };
+        let of_bodies = TileTrianglesArgs::<FrameBox> {
+            leaves: groups.leaves(),
+            nodes: groups.nodes(),
+            faces: Span::EMPTY,
+            filters,
+            whose: groups.whose(),
+            tile_pairs,
+            pairs,
+            counters,
+            from: 0,
+            to,
+            flags: TraverseFlags::KEEP_ADJACENT,
+            every: 1,
+            known: Span::EMPTY,
+            work: Span::EMPTY,
+        };
+        walk::<FrameBox, entry::traverse_tiles<FrameBox>, entry::traverse_triangles<FrameBox>>(
+            given.device,
+            (&of_groups, &of_bodies),
+        )?;
+        Ok(pairs)
+    }
+
+    /// Returns the pairs of nodes after a level, made if there are none.
+    fn after_level(&mut self, device: &Device, level: usize) -> Result<&List<NodePair>, Error> {
+        while self.node_pairs.len() <= level {
+            let which = counter::NODE_PAIRS[self.node_pairs.len()];
+            self.node_pairs.push(List::new(device, "pairs of nodes", which, self.relations.capacity())?);
+        }
+        Ok(&self.node_pairs[level])
+    }
+}
+
+/// Launches blocks of a warp that stride: many on a GPU, for they end at different times.
+fn striding<E: Entry>(device: &Device, args: &E::Args) -> Result<(), Error> {
+    let resident = device.blocks_at_once::<E>(u32::MAX as usize)?;
+    launch::blocks::<E>(device, resident * if device.is_gpu() { TURNS } else { 1 }, args)
+}
+
+/// Error for a context without instances: a fault of the pipeline.
+fn without_instances() -> Error {
+    Error::Bug { what: "a query reads instances, and there are none".into() }
+}
+
+impl<R: Precision> CandidateSearch<R> for BodyGroups {
+    fn construct(&mut self, given: &BroadContext<R>, layout: &Layout) -> Result<(), Error> {
+        let instances = given.instances.ok_or_else(without_instances)?;
+        (self.first, self.is_stale) = (None, false);
+        self.groups.construct(given.device, layout, instances)
+    }
+
+    fn learn(&mut self) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// Volumes of meshes have no margin. A stale order of bodies is built again.
+    fn set_margin(&mut self, _margin: f32) -> bool {
+        self.is_stale
+    }
+
+    fn fit(&mut self, given: &BroadContext<R>) -> Result<(), Error> {
+        self.groups.fit(given.device, given.instances.ok_or_else(without_instances)?)
+    }
+
+    fn refit(&mut self, given: &BroadContext<R>) -> Result<(), Error> {
+        self.groups.refit(given.device)
+    }
+
+    fn traverse(&mut self, given: &BroadContext<R>, candidates: &Candidates) -> Result<(), Error> {
+        let (device, counters) = (given.device, candidates.counters);
+        let instances: &Instances = given.instances.ok_or_else(without_instances)?;
+        let tables = instances.tables();
+        self.tables = Some(tables);
+        let pairs = self.pairs_of_bodies(given, counters)?;
+        let relations = self.relations.output(counters);
+        let args = RelationsArgs { tables, pairs, relations, counters };
+        launch::striding::<entry::traverse_relations>(device, self.body_pairs.capacity(), &args)?;
+        let tile_pairs = self.tile_pairs.output(counters);
+        let (levels, mut pairs) = (instances.levels.max(1), Output::EMPTY);
+        debug_assert!(levels <= MESH_LEVELS);
+        for level in 0..levels {
+            // After the last level all are pairs of tiles.
+            let is_last = level + 1 == levels;
+            let next = if is_last {
+                Output::EMPTY
+            } else {
+                self.after_level(device, level as usize)?.output(counters)
+            };
+            let args = NodesArgs { tables, relations, pairs, next, tile_pairs, counters };
+            striding::<entry::traverse_nodes>(device, &args)?;
+            pairs = next;
+        }
+        let args = InstancesArgs { tables, relations, tile_pairs, pairs: candidates.pairs, counters };
+        striding::<entry::traverse_instances>(device, &args)
+    }
+
+    fn lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
+        let mut all: Vec<&mut dyn GrowableOutput> =
+            vec![&mut self.group_pairs, &mut self.body_pairs, &mut self.relations, &mut self.tile_pairs];
+        all.extend(self.node_pairs.iter_mut().map(|list| list as &mut dyn GrowableOutput));
+        all
+    }
+
+    fn placeable(&self) -> Option<Placeable> {
+        let (relations, tile_pairs) = (self.relations.entries(), self.tile_pairs.entries());
+        self.tables.map(|tables| Placeable { tables, relations, tile_pairs })
+    }
+
+    fn finish(&mut self, counters: &Counts) -> Result<(), Error> {
+        let pairs = self.group_pairs.demand(counters);
+        let first = *self.first.get_or_insert(pairs);
+        self.is_stale = pairs > first + first / 4 + STALE;
+        Ok(())
+    }
+
+    fn depths(&self) -> Vec<usize> {
+        self.groups.depths()
+    }
+
+    fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error> {
+        let (order, leaves, nodes) = self.groups.download()?;
+        Ok(vec![
+            ("construct", xxh3_64(bytemuck::cast_slice(&order))),
+            ("fit", xxh3_64(bytemuck::cast_slice(&leaves))),
+            ("refit", xxh3_64(bytemuck::cast_slice(&nodes))),
+        ])
+    }
+
+    /// Checks that each body has one place, and that its box and those above hold its placed
+    /// vertices. Checks of meshes are tests of `pipeline::instances`.
+    fn check(&self, layout: &Layout, faces: &[[u32; 3]], frames: &[Vec<Vec3<R>>]) -> Result<(), Error> {
+        let mut seen = vec![false; layout.bodies()];
+        for (leaf, body, volumes) in self.groups.volumes()? {
+            let is_known = seen.get_mut(body).is_some_and(|seen| !std::mem::replace(seen, true));
+            if !is_known {
+                return Err(broken(Violation::Leaf { leaf }));
+            }
+            let (first, count) = layout.triangles(body);
+            let own = faces.iter().skip(first as usize).take(count as usize).flatten();
+            let points: Vec<Vec3<f64>> = own.map(|&v| frames[0][v as usize].wide()).collect();
+            let outside = |volume: &FrameBox| points.iter().any(|&point| !volume.holds(point, point));
+            if let Some(level) = volumes.iter().position(outside) {
+                return Err(broken(Violation::Outside { leaf, level: level as u32 }));
+            }
+        }
+        match (0..seen.len()).find(|&body| layout.triangles(body).1 > 0 && !seen[body]) {
+            Some(body) => Err(broken(Violation::Leaf { leaf: body as u32 })),
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::emulator::{Emulator, Mode};
+    use crate::query::Query;
+    use crate::samples::soup;
+    use crate::scene::{Body, Motion, Pose};
+    use nearmiss_kernels::abi::Positions;
+
+    /// Returns the checker's verdict on the boxes of 80 bodies, some fixed, after a fault.
+    fn checked(fault: impl Fn(&mut BodyGroups)) -> Result<(), Error> {
+        let device = Device::emulator(Emulator::new(Mode::Engine, None)?);
+        let mesh = |at: u64| soup(20, at % 3, false).frames().swap_remove(0);
+        let body = |at: u64| match at % 4 {
+            0 => Ok(Body::fixed(mesh(at))),
+            _ => Body::rigid(mesh(at)).at(&Motion::Pose(Pose::at([at as f64, 1e6, 0.3]))),
+        };
+        let bodies = (0..80).map(body).collect::<Result<Vec<_>, _>>()?;
+        let layout = Layout::new(&bodies, Query::discrete().kind());
+        let instances = Instances::new(&device, &bodies, &layout)?;
+        let given = BroadContext::<f64> {
+            device: &device,
+            frames: Positions { still: Span::EMPTY, moving: Span::EMPTY },
+            faces: Span::EMPTY,
+            records: Span::EMPTY,
+            is_submitted: false,
+            instances: Some(&instances),
+        };
+        let mut groups = BodyGroups::new(&device, &layout)?;
+        groups.construct(&given, &layout)?;
+        CandidateSearch::<f64>::fit(&mut groups, &given)?;
+        CandidateSearch::<f64>::refit(&mut groups, &given)?;
+        fault(&mut groups);
+        CandidateSearch::<f64>::check(&groups, &layout, &layout.faces, &[instances.positions(&layout)?])
+    }
+
+    #[test]
+    fn a_box_that_holds_too_little_is_named() {
+        checked(|_| ()).expect("boxes hold their bodies");
+        let error = checked(|groups| groups.groups.shrink_first()).expect_err("a fault").to_string();
+        assert!(error.contains("Outside"), "{error}");
+    }
+}

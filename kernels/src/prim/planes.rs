@@ -1,0 +1,35 @@
+//! Two triangles in one frame, known up to an error: whether the plane of one parts them.
+//!
+//! Take any direction `n`. The triangles are apart if all heights `n . q` exceed all heights
+//! `n . p`. It does not matter how well `n` is the normal of a triangle. Each coordinate of a
+//! difference of corners errs by the slack at most, so a difference of heights errs by `|n|_1` of
+//! it. A height is computed of a difference with a base, which is at most the reach
+//! `rho_A + rho_B + |m|`, by five roundings. Two heights, their difference and the allowance take
+//! below `12u` of `|n|_1` times the reach, and the slack is `32u` of the reach or more. So
+//! [`PLANE_SLACK`], twice the slack, covers all. Products that underflow lose less than the
+//! smallest normal number. An allowance below [`PLANE_LIMIT`] means that no height overflows.
+
+use crate::math::tolerance::{PLANE_LIMIT, PLANE_SLACK};
+use crate::math::{Real, Vec3};
+
+/// Whether two triangles whose corners err by `slack` are certainly apart, by their two planes.
+/// False proves nothing. Without branches.
+#[inline(always)]
+pub fn apart(p: &[Vec3<f32>; 3], q: &[Vec3<f32>; 3], slack: f32) -> bool {
+    let normal = |t: &[Vec3<f32>; 3]| (t[1] - t[0]).cross(t[2] - t[0]);
+    parted(normal(p), p, q, slack) | parted(normal(q), p, q, slack)
+}
+
+/// Whether heights in direction `n` part them.
+#[inline(always)]
+fn parted(n: Vec3<f32>, p: &[Vec3<f32>; 3], q: &[Vec3<f32>; 3], slack: f32) -> bool {
+    let base = p[0];
+    let ends = |t: &[Vec3<f32>; 3]| {
+        let (x, y, z) = (n.dot(t[0] - base), n.dot(t[1] - base), n.dot(t[2] - base));
+        (x.lesser(y).lesser(z), x.greater(y).greater(z))
+    };
+    let ((p_lo, p_hi), (q_lo, q_hi)) = (ends(p), ends(q));
+    let sum = Real::abs(n[0]) + Real::abs(n[1]) + Real::abs(n[2]);
+    let allowance = PLANE_SLACK * slack * sum + f32::MIN_POSITIVE;
+    ((q_lo - p_hi > allowance) | (p_lo - q_hi > allowance)) & (allowance < PLANE_LIMIT)
+}

@@ -1,0 +1,129 @@
+//! # Nodes of instances: pairs of nodes → pairs of the nodes below
+//! Paper    not in the paper, whose queues hold pairs of nodes of binary trees.
+//! Launch   blocks of a warp, which stride over the pairs; once for each level. First over the roots
+//!          of all relations.
+//! Reads    a relation, two nodes and up to 32 below each.
+//! Writes   pairs of tiles, or pairs for the next level, in no order.
+//! Before   relations and pairs are listed. The children of a node are all tiles, or none is.
+//! After    tile_pairs ∪ next ⊇ {(c, d) : c below a, d below b, boxes overlap in both frames}, for
+//!          each (a, b) in pairs. A tile is below itself.
+//!          A pair that is left out has no two triangles with a common point.
+//! Room     both lists may be too short: counters go on, the host grows them and runs again.
+//! Cost     32 B a node; a box in the other frame 50 operations. Those of one side that meet the
+//!          node of the other are rows, a vote each.
+
+use crate::abi::{MeshNode, NodePair, NodesArgs, Output, counter};
+use crate::bvh::pieces::Pieces;
+use crate::bvh::relation::Both;
+use crate::bvh::tiles::TILE;
+use crate::exec::{Block, Lane, Own, PairTest, Slot};
+use bytemuck::Zeroable;
+
+/// Lanes of a block: a lane a node below.
+pub const LANES: u32 = TILE;
+/// Pairs of nodes below two.
+const FOUND: u32 = LANES * LANES;
+/// Shared memory of a block.
+pub const SHARED: u32 = Pieces::<Both>::bytes(LANES) + 4 * LANES + 8 * FOUND;
+
+/// Whether boxes overlap in both frames.
+struct Overlap;
+
+impl PairTest for Overlap {
+    type Item = Both;
+    #[inline(always)]
+    fn test(a: &Both, b: &Both) -> bool {
+        a.overlaps(b)
+    }
+}
+
+/// The nodes below a node: the first, and how many.
+#[inline(always)]
+fn below(at: u32, node: &MeshNode) -> (u32, u32) {
+    if node.count == 0 { (at, 1) } else { (node.first, node.count) }
+}
+
+/// Pairs of nodes below pairs.
+pub fn nodes<B: Block>(block: &mut B, args: &NodesArgs) {
+    let rows = Pieces::<Both>::new(block, LANES);
+    let names = block.shared::<u32>(LANES);
+    let found = block.shared::<[u32; 2]>(FOUND);
+    let mut own = block.slot([Both::zeroed(); 2]);
+    let mut firsts = block.slot(0u32);
+    let mut meets = block.slot([false; 2]);
+    let is_root = args.pairs.items().is_empty();
+    let count = if is_root { args.relations.listed(block) } else { args.pairs.listed(block) };
+    let (mut unit, mut tests) = (block.block(), 0u64);
+    while unit < count {
+        let pair = if is_root { NodePair::zeroed() } else { block.load(args.pairs.items(), unit) };
+        let number = if is_root { unit } else { pair.relation };
+        let relation = block.load(args.relations.items(), number);
+        let [a, b] = if is_root {
+            relation.bodies.map(|body| {
+                let mesh = block.load(args.tables.bodies, body).mesh;
+                block.load(args.tables.meshes, mesh).root
+            })
+        } else {
+            [pair.a, pair.b]
+        };
+        let [of_a, of_b] = [a, b].map(|node| block.load(args.tables.nodes, node));
+        let ((a, a_count), (b, b_count)) = (below(a, &of_a), below(b, &of_b));
+        let [whole_a, whole_b] = [relation.of_first(&of_a.volume), relation.of_second(&of_b.volume)];
+        block.phase(|lane| {
+            let i = lane.lane();
+            let mut both = [Both::zeroed(); 2];
+            let mut meet = [false; 2];
+            if i < a_count {
+                both[0] = relation.of_first(&lane.read(args.tables.nodes, a + i).volume);
+                meet[0] = both[0].overlaps(&whole_b);
+            }
+            if i < b_count {
+                both[1] = relation.of_second(&lane.read(args.tables.nodes, b + i).volume);
+                meet[1] = both[1].overlaps(&whole_a);
+            }
+            *own.of(lane) = both;
+            *meets.of(lane) = meet;
+            *firsts.of(lane) = meet[0] as u32;
+            lane.meet();
+        });
+        let height = block.number(&mut firsts);
+        tests += (a_count + b_count + height * LANES) as u64;
+        unit += block.blocks();
+        if height == 0 {
+            continue;
+        }
+        block.phase(|lane| {
+            if meets.of(lane)[0] {
+                rows.put(lane, *firsts.of(lane), own.of(lane)[0]);
+                lane.put(names, *firsts.of(lane), lane.lane());
+            }
+            lane.meet();
+        });
+        let fill = block.cross_own::<Overlap>(
+            0..height,
+            0,
+            |lane, k| rows.get(lane, k),
+            |lane| Own {
+                item: own.of(lane)[1],
+                name: lane.lane(),
+                end: if meets.of(lane)[1] { height } else { 0 },
+            },
+            |lane, at, [k, name]| lane.put(found, at, [lane.get(names, k), name]),
+        );
+        // Nodes below a node are of one level.
+        let are_tiles = (a < args.tables.tiles) & (b < args.tables.tiles);
+        let to: Output<NodePair> = if are_tiles { args.tile_pairs } else { args.next };
+        let base = to.reserve(block, fill as u64);
+        block.phase(|lane| {
+            let mut at = lane.lane();
+            while at < fill {
+                let [first, second] = lane.get(found, at);
+                let pair = NodePair { relation: number, a: a + first, b: b + second, pad: 0 };
+                to.put(lane, base + at as u64, pair);
+                at += LANES;
+            }
+            lane.meet();
+        });
+    }
+    args.counters.add_once(block, counter::STEPS, tests);
+}

@@ -1,0 +1,185 @@
+//! # Triangles of instances: pairs of tiles → candidates
+//! Paper    not in the paper.
+//! Launch   blocks of a warp, which stride over the pairs of tiles.
+//! Reads    a relation, two nodes, 32 contiguous triangles of each tile.
+//! Writes   candidates: a pair of tiles and two places, each once, in no order.
+//! Before   relations and pairs of tiles are listed.
+//! After    pairs ⊇ {(p, q) : p in tile a, q in tile b, placed triangles share a point}.
+//!          Boxes overlap in the frame of the first body, and no plane of the two parts them.
+//! Room     `pairs` may be too short: counters go on, the host grows it and runs again.
+//! Cost     32 B a triangle, contiguous; 48 B one that meets the other tile's box. Triangles that meet the other tile's box are rows on the
+//!          side that has fewer of them, and columns on the other, a lane each; a row takes a test of
+//!          all columns and a vote. Planes take full warps: 100 operations in f32 a pair.
+
+use crate::abi::{Candidate, InstancesArgs, NONE, counter};
+use crate::bv::FrameBox;
+use crate::bvh::pieces::Pieces;
+use crate::bvh::tiles::TILE;
+use crate::exec::{Block, Lane, Own, PairTest, RowMap, Slot};
+use crate::math::Vec3;
+use crate::prim::planes;
+use bytemuck::Zeroable;
+
+/// Lanes of a block.
+pub const LANES: u32 = TILE;
+/// Pairs of triangles of two tiles.
+const FOUND: u32 = LANES * LANES;
+/// Corners of a triangle.
+type Corners = [[f32; 3]; 3];
+/// Shared memory of a block.
+pub const SHARED: u32 =
+    Pieces::<FrameBox>::bytes(LANES) + 2 * Pieces::<Corners>::bytes(LANES) + 4 * LANES + 4 * FOUND;
+
+/// Whether boxes overlap.
+struct Overlap;
+
+impl PairTest for Overlap {
+    type Item = FrameBox;
+    #[inline(always)]
+    fn test(a: &FrameBox, b: &FrameBox) -> bool {
+        a.overlaps(b)
+    }
+}
+
+/// The planes of two triangles.
+struct Planes {
+    slack: f32,
+}
+
+/// Result for two triangles that a plane parts.
+const APART: u32 = 0;
+/// For two that may meet.
+const MAY_MEET: u32 = 1;
+
+impl RowMap for Planes {
+    type Number = f32;
+    type Row = [Corners; 2];
+    #[inline(always)]
+    fn at_once(&self, [p, q]: [Corners; 2]) -> u32 {
+        let corners = |t: Corners| [Vec3(t[0]), Vec3(t[1]), Vec3(t[2])];
+        if planes::apart(&corners(p), &corners(q), self.slack) { APART } else { MAY_MEET }
+    }
+}
+
+/// A lane's triangles of both tiles, in the frame of the first.
+#[derive(Clone, Copy)]
+struct Two {
+    boxes: [FrameBox; 2],
+    meet: [bool; 2],
+}
+
+/// Candidates of pairs of tiles.
+pub fn triangles<B: Block>(block: &mut B, args: &InstancesArgs) {
+    let rows = Pieces::<FrameBox>::new(block, LANES);
+    let corners = [Pieces::<Corners>::new(block, LANES), Pieces::<Corners>::new(block, LANES)];
+    let names = block.shared::<u32>(LANES);
+    let found = block.shared::<u32>(FOUND);
+    let mut two = block.slot(Two { boxes: [FrameBox::zeroed(); 2], meet: [false; 2] });
+    let mut firsts = block.slot(0u32);
+    let mut seconds = block.slot(0u32);
+    let mut kept = block.slot(None);
+    let (count, tables) = (args.tile_pairs.listed(block), &args.tables);
+    let (mut unit, mut tests) = (block.block(), 0u64);
+    while unit < count {
+        let pair = block.load(args.tile_pairs.items(), unit);
+        let relation = block.load(args.relations.items(), pair.relation);
+        let [tile_a, tile_b] = [pair.a, pair.b].map(|tile| block.load(tables.nodes, tile).volume);
+        let (in_second, in_first) = (relation.of_first(&tile_a).second, relation.of_second(&tile_b).first);
+        block.phase(|lane| {
+            let i = lane.lane();
+            let places = [pair.a * TILE + i, pair.b * TILE + i];
+            let (p, q) = (lane.read(tables.leaves, places[0]), lane.read(tables.leaves, places[1]));
+            let mut own = Two { boxes: [p.volume; 2], meet: [false; 2] };
+            if (p.number != NONE) & p.volume.overlaps(&in_first) {
+                own.meet[0] = true;
+                corners[0].put(lane, i, lane.read(tables.triangles, places[0]).corners);
+            }
+            if (q.number != NONE) & q.volume.overlaps(&in_second) {
+                let [x, y, z] = lane.read(tables.triangles, places[1]).corners;
+                let moved = [relation.to_first(x), relation.to_first(y), relation.to_first(z)];
+                own.boxes[1] = relation.around(&moved);
+                own.meet[1] = own.boxes[1].overlaps(&tile_a);
+                corners[1].put(lane, i, moved);
+            }
+            *two.of(lane) = own;
+            (*firsts.of(lane), *seconds.of(lane)) = (own.meet[0] as u32, own.meet[1] as u32);
+            lane.meet();
+        });
+        let [of_a, of_b] = [block.number(&mut firsts), block.number(&mut seconds)];
+        // Rows are the fewer ones; columns, a lane each, cost nothing.
+        let is_turned = of_b < of_a;
+        let height = if is_turned { of_b } else { of_a };
+        tests += (2 * LANES + LANES * height) as u64;
+        let tile_pair = unit;
+        unit += block.blocks();
+        if height == 0 {
+            continue;
+        }
+        block.phase(|lane| {
+            let own = *two.of(lane);
+            let (row, is_row) =
+                if is_turned { (own.boxes[1], own.meet[1]) } else { (own.boxes[0], own.meet[0]) };
+            let at = if is_turned { *seconds.of(lane) } else { *firsts.of(lane) };
+            if is_row {
+                rows.put(lane, at, row);
+                lane.put(names, at, lane.lane());
+            }
+            lane.meet();
+        });
+        let fill = block.cross_own::<Overlap>(
+            0..height,
+            0,
+            |lane, k| rows.get(lane, k),
+            |lane| {
+                let own = *two.of(lane);
+                let (item, is_column) =
+                    if is_turned { (own.boxes[0], own.meet[0]) } else { (own.boxes[1], own.meet[1]) };
+                Own { item, name: lane.lane(), end: if is_column { height } else { 0 } }
+            },
+            |lane, at, [k, name]| {
+                let row = lane.get(names, k);
+                let places = if is_turned { [name, row] } else { [row, name] };
+                lane.put(found, at, Candidate::word(places));
+            },
+        );
+        let map = Planes { slack: relation.slack };
+        let (mut at, mut fits) = (0, 0);
+        while at < fill {
+            block.map_rows(
+                &map,
+                |lane| (at + lane.lane() < fill).then(|| lane.get(found, at + lane.lane())),
+                |lane, word| {
+                    let [p, q] = Candidate::of_word(word);
+                    Some([corners[0].get(lane, p), corners[1].get(lane, q)])
+                },
+                |lane, result| {
+                    let own = result.and_then(|(word, verdict)| (verdict == MAY_MEET).then_some(word));
+                    *firsts.of(lane) = own.is_some() as u32;
+                    *kept.of(lane) = own;
+                    lane.meet();
+                },
+            );
+            let some = block.number(&mut firsts);
+            block.phase(|lane| {
+                if let Some(word) = *kept.of(lane) {
+                    // Never behind its own place, which was read.
+                    lane.put(found, fits + *firsts.of(lane), word);
+                }
+                lane.meet();
+            });
+            fits += some;
+            at += LANES;
+        }
+        let base = args.pairs.reserve(block, fits as u64);
+        block.phase(|lane| {
+            let mut at = lane.lane();
+            while at < fits {
+                let places = Candidate::of_word(lane.get(found, at));
+                args.pairs.put(lane, base + at as u64, Candidate { tile_pair, places }.pair());
+                at += LANES;
+            }
+            lane.meet();
+        });
+    }
+    args.counters.add_once(block, counter::STEPS, tests);
+}

@@ -1,0 +1,101 @@
+//! Instances: discrete queries of rigid scenes that place no vertex in the scene. The judge is the
+//! path by tiles, which places all: both must list the same pairs.
+
+mod alike;
+mod lists;
+mod touching;
+mod ways;
+
+use nearmiss::mesh::Positions;
+use nearmiss::research::{BroadPhase, QueryExt};
+use nearmiss::scene::{BodyId, CollisionFilter, Motion, Pose, Scene};
+use nearmiss::{Body, Detector, Device, Mesh, Query};
+use rand::rngs::SmallRng;
+use rand::{Rng, SeedableRng};
+use support::engine;
+
+/// The query that reads instances if it can.
+fn query() -> Query {
+    Query::discrete()
+}
+
+/// The same, with all vertices placed.
+fn judge() -> Query {
+    Query::discrete().with_broad_phase(BroadPhase::Tiles)
+}
+
+/// Whether the last frames of a detector's query read instances.
+fn reads_instances(detector: &mut Detector) -> bool {
+    let plan = detector.plan(&query()).expect("a plan");
+    plan.frame.iter().flat_map(|stage| &stage.kernels).any(|kernel| kernel.kernel == "traverse_instances")
+}
+
+/// The answers of both, on detectors of their own that keep their memory from frame to frame.
+struct Both {
+    own: Detector,
+    judge: Detector,
+}
+
+impl Both {
+    fn new(device: &Device, scene: &Scene) -> Both {
+        let of = |device: Device| Detector::new(device, scene.clone()).expect("a detector");
+        Both { own: of(device.clone()), judge: of(engine()) }
+    }
+
+    /// Moves bodies and compares answers; the number of rows.
+    fn alike(&mut self, motions: &[(BodyId, Motion)]) -> Result<usize, String> {
+        for detector in [&mut self.own, &mut self.judge] {
+            detector.update(motions).map_err(|error| error.to_string())?;
+        }
+        let found = self.own.query(&query()).map_err(|error| error.to_string())?;
+        let expected = self.judge.query(&judge()).map_err(|error| error.to_string())?;
+        if found.hash() != expected.hash() || found.rows != expected.rows {
+            return Err(format!("{} rows, the judge has {}", found.len(), expected.len()));
+        }
+        Ok(found.len())
+    }
+}
+
+/// A sphere about a place, by rings and twice as many meridians, with some radius.
+fn sphere(rings: u32, radius: f64, about: [f64; 3]) -> Mesh {
+    use std::f64::consts::PI;
+    let around = 2 * rings;
+    let point = |ring: u32, k: u32| {
+        let (up, turn) = (PI * f64::from(ring) / f64::from(rings), PI * f64::from(k) / f64::from(rings));
+        let unit = [up.sin() * turn.cos(), up.sin() * turn.sin(), up.cos()];
+        [0, 1, 2].map(|axis| about[axis] + radius * unit[axis])
+    };
+    let mut points = vec![point(0, 0), point(rings, 0)];
+    points.extend((1..rings).flat_map(|ring| (0..around).map(move |k| point(ring, k))));
+    let at = |ring: u32, k: u32| match ring {
+        0 => 0,
+        ring if ring == rings => 1,
+        ring => 2 + (ring - 1) * around + k % around,
+    };
+    let quads = (0..rings).flat_map(|ring| (0..around).map(move |k| (ring, k)));
+    let triangles = quads.flat_map(|(ring, k)| {
+        let [a, b, c, d] = [at(ring, k), at(ring + 1, k), at(ring + 1, k + 1), at(ring, k + 1)];
+        [[a, b, c], [a, c, d]]
+    });
+    let faces = triangles.filter(|[a, b, c]| a != b && b != c && a != c).collect();
+    Mesh::new("sphere", Positions::F64(points), faces).expect("a mesh")
+}
+
+/// The faces of a box whose corner `k` is at bit 0, 1 and 2 of `k`.
+fn box_faces() -> Vec<[u32; 3]> {
+    let quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+    quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect()
+}
+
+/// A box of that size.
+fn cube(size: f64) -> Mesh {
+    let corner = |k: usize| [0, 1, 2].map(|axis| size * (k >> axis & 1) as f64);
+    Mesh::new("box", Positions::F64((0..8).map(corner).collect()), box_faces()).expect("a mesh")
+}
+
+/// Any rotation.
+fn rotation(rng: &mut SmallRng) -> [f64; 4] {
+    let q: [f64; 4] = [(); 4].map(|()| rng.random_range(-1.0..1.0));
+    let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+    q.map(|x| x / length)
+}
