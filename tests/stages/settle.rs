@@ -15,24 +15,25 @@ const MANY: usize = 6;
 /// In one plane, moving as one: small triangles on a large one and long ones across each other, which touch at the start;
 /// and couples with ever smaller gaps, of which the last are nearer than any tolerance resolves.
 fn flat() -> Body {
+    let flat = |points: [[f32; 2]; 3], z: f32| points.map(|[x, y]| [x, y, z]);
     let small = |i: usize| {
         let [x, y] = [i % 32, i / 32].map(|k| (k + 1) as f32 / 128.0);
-        [[x, y], [x + 1.0 / 256.0, y], [x, y + 1.0 / 256.0]]
+        flat([[x, y], [x + 1.0 / 256.0, y], [x, y + 1.0 / 256.0]], 0.0)
     };
     let long = |i: usize, across: bool| {
         let at = 2.0 + (i + 1) as f32 / 32.0;
-        [[at, 0.0], [at + 1.0 / 128.0, 0.0], [at, 1.0]]
-            .map(|[x, y]| if across { [2.0 + y, x - 2.0] } else { [x, y] })
+        let points = [[at, 0.0], [at + 1.0 / 128.0, 0.0], [at, 1.0]];
+        flat(points.map(|[x, y]| if across { [2.0 + y, x - 2.0] } else { [x, y] }), 0.0)
     };
     let couple = |i: usize| {
-        let (x, gap) = (4.0 + 2.0 * i as f32, 0.5f32.powi(i as i32));
-        [[[x, 0.0], [x + 1.0, 0.0], [x, 1.0]], [[x, -gap], [x + 1.0, -gap], [x, -1.0 - gap]]]
+        let (z, gap) = (i as f32, 0.5f32.powi(i as i32));
+        [flat([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], z), flat([[1.0, gap], [gap, 1.0], [1.0, 1.0]], z)]
     };
-    let mut all = vec![[[0.0f32, 0.0], [1.0, 0.0], [0.0, 1.0]]];
+    let mut all = vec![flat([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], 0.0)];
     all.extend((0..1_000).map(small));
     all.extend((0..62).map(|i| long(i % 31, i >= 31)));
-    all.extend((0..40).flat_map(couple));
-    let t0: Vec<[f32; 3]> = all.iter().flatten().map(|&[x, y]| [x, y, 0.0]).collect();
+    all.extend((1..40).flat_map(couple));
+    let t0 = all.concat();
     let t1: Vec<_> = t0.iter().map(|p| [p[0] + 1.0 / 1024.0, p[1], p[2]]).collect();
     let faces: Vec<_> = (0..all.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     moving(&t0, &t1, &faces)
@@ -64,7 +65,7 @@ fn a_long_list_is_settled_as_a_short_one() {
     let touching = alone.iter().filter(|row| row.status == Status::Certified).count();
     let undecided = alone.iter().filter(|row| row.status == Status::Undecided).count();
     assert_eq!(touching, 3 * 1_000 + 4 * 31 * 31, "they touch at the start");
-    assert!(undecided > 100, "{undecided} of the couples are near");
+    assert!(undecided > 20, "{undecided} of the couples are near");
     let bodies: Vec<_> =
         (0..MANY).map(|i| flat().with_filter(CollisionFilter::in_environment(i as u32))).collect();
     let (all, many) = asked(bodies, Query::continuous());

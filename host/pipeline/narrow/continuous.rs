@@ -30,11 +30,14 @@ pub struct Capacities {
     pub hits: [usize; 2],
     /// Pairs that a rung leaves to the next.
     pub left: [usize; 2],
+    /// Pairs that a long list leaves to be settled.
+    pub asked: [usize; 2],
 }
 
 impl Capacities {
     fn usual(few: usize) -> Capacities {
-        Capacities { survivors: [few, 2 * few], hits: [few, few], left: [few / 4, few / 4] }
+        let left = [few / 4, few / 4];
+        Capacities { survivors: [few, 2 * few], hits: [few, few], left, asked: [0, 0] }
     }
 }
 
@@ -123,7 +126,7 @@ impl ContinuousNarrow {
             survivors: (!is_apart).then(survivors).transpose()?,
             vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, capacities.hits[0])?,
             ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, capacities.hits[1])?,
-            rungs: Rungs::new(device, solver.certified(), capacities.left)?,
+            rungs: Rungs::new(device, solver.certified(), &capacities)?,
             counters: [
                 counter::VF_OPEN,
                 counter::EE_OPEN,

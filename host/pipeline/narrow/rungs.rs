@@ -1,6 +1,6 @@
 //! The ladder of certified solvers: the rungs of a query, the lists between them, their launches.
 
-use super::NarrowContext;
+use super::{Capacities, NarrowContext};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::list::{GrowableOutput, List, Named, named};
@@ -90,7 +90,7 @@ pub struct Rungs {
     /// Index into [`LEFT`] of each.
     names: Vec<usize>,
     /// Pairs that a long list in f64 leaves to be settled in a launch of their own; none without
-    /// f64. They have no room, and there is no launch, until such a list was seen.
+    /// f64. In a query they have no room, and there is no launch, until such a list was seen.
     asked: Option<Left>,
     /// Tolerances of bodies; empty if all pairs have the same.
     tolerances: Buffer<BodyTolerance>,
@@ -118,19 +118,23 @@ impl Rungs {
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(device: &Device, certified: Option<&Certified>, capacity: [usize; 2]) -> Result<Self, Error> {
+    pub fn new(
+        device: &Device,
+        certified: Option<&Certified>,
+        capacities: &Capacities,
+    ) -> Result<Self, Error> {
         let rungs = certified.map_or(&[][..], rungs);
         let names: Vec<_> = rungs.iter().rev().skip(1).rev().map(|rung| rung.left()).collect();
         let is_apart = certified.is_some_and(Certified::is_apart);
         let of = |at: usize| {
             if is_apart {
-                lists(device, LEFT[at], capacity).map(Left::Begun)
+                lists(device, LEFT[at], capacities.left).map(Left::Begun)
             } else {
-                lists(device, LEFT[at], capacity).map(Left::Pairs)
+                lists(device, LEFT[at], capacities.left).map(Left::Pairs)
             }
         };
         let left = names.iter().map(|&at| of(at)).collect::<Result<_, Error>>()?;
-        let asked = || lists(device, ASKED, [0, 0]).map(Left::Pairs);
+        let asked = || lists(device, ASKED, capacities.asked).map(Left::Pairs);
         let asked = rungs.contains(&Rung::Isolate64).then(asked).transpose()?;
         let tolerances = device.of(purpose::TOLERANCES).buffer(0)?;
         let certified = certified.copied().unwrap_or_default();

@@ -9,7 +9,7 @@ use nearmiss::error::Error;
 use nearmiss::query::Query;
 use nearmiss::research::pipeline::Layout;
 use nearmiss::research::pipeline::counts::{Counts, FrameCounters};
-use nearmiss::research::pipeline::narrow::{Capacities, ContinuousNarrow, Features, NarrowContext};
+use nearmiss::research::pipeline::narrow::{Capacities, ContinuousNarrow, Features, Narrow, NarrowContext};
 use nearmiss::research::pipeline::precision::Precision;
 use nearmiss::research::{Certified, ContinuousSolver, WithSolver};
 use nearmiss_kernels::abi::{Hit, Output, Positions, Span, counter};
@@ -68,7 +68,7 @@ fn some<R: Precision>(
     let candidates =
         if how.filters || solver.certified().is_some_and(Certified::is_apart) { all } else { [0, 0] };
     let mut features = Features::new(device, &layout, candidates)?;
-    let capacities = Capacities { survivors: all, hits: all, left: all };
+    let capacities = Capacities { survivors: all, hits: all, left: all, asked: all };
     let mut narrow = ContinuousNarrow::new(device, solver, capacities)?;
     let mut counts = Counts::default();
     let given = [&vf[..], &ee];
@@ -140,9 +140,17 @@ impl<R: Precision> Run<'_, R> {
         Ok([start.to(&filtered)?, filtered.to(&end)?])
     }
 
-    /// Returns the verdicts in the cases' order, and the counts.
-    fn answers(&self, cases: usize) -> Result<Answers, Error> {
+    /// Returns the verdicts in the cases' order, and the counts. No list runs again here, so a short
+    /// one would lose cases: that is an error.
+    fn answers(&mut self, cases: usize) -> Result<Answers, Error> {
         let counters = self.counters.read()?;
+        for step in 0..Narrow::<R>::steps(&self.narrow).len() {
+            for list in Narrow::<R>::lists(&mut self.narrow, step, &mut self.features) {
+                if list.grow(self.device, &counters)? {
+                    return Err(Error::Bug { what: "a list of single pairs was too short".into() });
+                }
+            }
+        }
         let certified = self.solver.certified().is_some();
         let mut verdicts = vec![None; cases];
         let met = |hit: &Hit| Outcome {

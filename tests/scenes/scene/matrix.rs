@@ -157,7 +157,7 @@ fn bytes_of_a_scene() {
             let of_triangles = matches!(motion, QueryKind::Discrete | QueryKind::Distance);
             let features = u64::from(!of_triangles);
             told("end points of each edge", features * 8 * 18 * bodies);
-            told("the earliest time of contact", if motion == QueryKind::Earliest { 16 } else { 0 });
+            told("the earliest time of contact", if motion == QueryKind::Earliest { 24 } else { 0 });
             for list in ["vertex/face contacts", "edge/edge contacts"] {
                 assert_eq!(
                     bytes(&plan, list) > 0,
