@@ -88,7 +88,8 @@ impl Relation {
         let (one, two) = (size(&shift), size(&back));
         let reach = of_a.radius + of_b.radius + if one > two { one } else { two };
         // False for NaN.
-        if !(reach <= RELATIVE_LIMIT) {
+        let has_frames = reach <= RELATIVE_LIMIT;
+        if !has_frames {
             return Relation { bodies, slack: f32::INFINITY, ..Relation::zeroed() };
         }
         let entry = |i: usize, j: usize| {

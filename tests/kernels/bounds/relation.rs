@@ -57,15 +57,15 @@ fn relative_slack() {
                 [0, 1, 2].map(|k| f64::from(if corner >> k & 1 == 0 { volume.lo[k] } else { volume.hi[k] }));
             let there = rigid::moved(&b.rows, &b.translation, Vec3(p)).0;
             let seen = turned_back(&a.rows, between(a.origin, there));
-            for k in 0..3 {
+            for (k, at) in seen.into_iter().enumerate() {
                 let slack = f64::from(relation.slack);
-                beyond = beyond.max(seen[k] - (f64::from(image.hi[k]) - slack));
-                beyond = beyond.max(f64::from(image.lo[k]) + slack - seen[k]);
+                beyond = beyond.max(at - (f64::from(image.hi[k]) - slack));
+                beyond = beyond.max(f64::from(image.lo[k]) + slack - at);
             }
         }
         beyond / f64::from(relation.slack)
     });
-    assert!(RELATIVE_SLACK > 0.0);
+    const { assert!(RELATIVE_SLACK > 0.0) };
     held("RELATIVE_SLACK", "f32", &found);
 }
 
