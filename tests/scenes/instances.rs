@@ -13,6 +13,7 @@ use nearmiss::{Body, Detector, Device, Mesh, Query};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 use support::engine;
+use support::solids::{box_faces, unit_sphere};
 
 /// The query that reads instances if it can.
 fn query() -> Query {
@@ -58,33 +59,9 @@ impl Both {
 
 /// A sphere about a place, by rings and twice as many meridians, with some radius.
 fn sphere(rings: u32, radius: f64, about: [f64; 3]) -> Mesh {
-    use std::f64::consts::PI;
-    let around = 2 * rings;
-    let point = |ring: u32, k: u32| {
-        let (up, turn) = (PI * f64::from(ring) / f64::from(rings), PI * f64::from(k) / f64::from(rings));
-        let unit = [up.sin() * turn.cos(), up.sin() * turn.sin(), up.cos()];
-        [0, 1, 2].map(|axis| about[axis] + radius * unit[axis])
-    };
-    let mut points = vec![point(0, 0), point(rings, 0)];
-    points.extend((1..rings).flat_map(|ring| (0..around).map(move |k| point(ring, k))));
-    let at = |ring: u32, k: u32| match ring {
-        0 => 0,
-        ring if ring == rings => 1,
-        ring => 2 + (ring - 1) * around + k % around,
-    };
-    let quads = (0..rings).flat_map(|ring| (0..around).map(move |k| (ring, k)));
-    let triangles = quads.flat_map(|(ring, k)| {
-        let [a, b, c, d] = [at(ring, k), at(ring + 1, k), at(ring + 1, k + 1), at(ring, k + 1)];
-        [[a, b, c], [a, c, d]]
-    });
-    let faces = triangles.filter(|[a, b, c]| a != b && b != c && a != c).collect();
+    let (unit, faces) = unit_sphere(rings);
+    let points = unit.iter().map(|p| [0, 1, 2].map(|axis| about[axis] + radius * p[axis])).collect();
     Mesh::new("sphere", Positions::F64(points), faces).expect("a mesh")
-}
-
-/// The faces of a box whose corner `k` is at bit 0, 1 and 2 of `k`.
-fn box_faces() -> Vec<[u32; 3]> {
-    let quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
-    quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect()
 }
 
 /// A box of that size.

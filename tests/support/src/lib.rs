@@ -13,6 +13,7 @@ pub mod judges;
 mod kernels;
 pub mod ptx;
 pub mod shrinking;
+pub mod solids;
 pub mod triangles;
 pub mod truth;
 
