@@ -14,11 +14,11 @@ impl Detector {
     /// fixed body. [`Error::Input`] for more triangles than indices reach. On an error nothing has
     /// changed.
     pub fn replace(&mut self, id: BodyId, body: Body) -> Result<(), Error> {
-        let old = self.scene.get(id).ok_or_else(|| nobody(id))?;
+        let old = self.scene.get(id).ok_or_else(|| empty(id))?;
         body.check_filter()?;
         self.fits(Some(old), &body)?;
         self.download_positions()?;
-        *self.scene.get_mut(id).ok_or_else(|| nobody(id))? = body;
+        *self.scene.get_mut(id).ok_or_else(|| empty(id))? = body;
         self.changed();
         self.placed.forget(id);
         Ok(())
@@ -46,9 +46,9 @@ impl Detector {
     /// # Errors
     /// [`Error::InvalidArgument`] for a body that is not in the scene.
     pub fn remove(&mut self, id: BodyId) -> Result<Body, Error> {
-        self.scene.get(id).ok_or_else(|| nobody(id))?;
+        self.scene.get(id).ok_or_else(|| empty(id))?;
         self.download_positions()?;
-        let body = self.scene.remove(id).ok_or_else(|| nobody(id))?;
+        let body = self.scene.remove(id).ok_or_else(|| empty(id))?;
         self.changed();
         Ok(body)
     }
@@ -71,7 +71,7 @@ impl Detector {
 }
 
 /// Error for a body that is not in the scene.
-pub(super) fn nobody(id: BodyId) -> Error {
+pub(super) fn empty(id: BodyId) -> Error {
     Error::InvalidArgument {
         what: format!("there is no body {id} in the scene"),
         advice: "name a body by the number that adding it returned, until it is removed".into(),

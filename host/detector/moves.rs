@@ -1,7 +1,7 @@
 //! Bodies move from frame to frame.
 
 use super::Detector;
-use super::edits::nobody;
+use super::edits::empty;
 use super::frame::without_ends;
 use crate::device::emulator::start_threads;
 use crate::error::Error;
@@ -30,7 +30,7 @@ impl Detector {
     fn put(&mut self, inputs: &[(BodyId, Motion)], query: Option<&Query>) -> Result<Vec<bool>, Error> {
         let mut named = vec![false; self.scene.bodies().len()];
         for (id, input) in inputs {
-            let Some(body) = self.scene.get(*id) else { return Err(nobody(*id)) };
+            let Some(body) = self.scene.get(*id) else { return Err(empty(*id)) };
             if std::mem::replace(&mut named[id.index()], true) {
                 return Err(Error::InvalidArgument {
                     what: format!("two inputs for body {id}, {}", body.name()),
@@ -51,7 +51,7 @@ impl Detector {
         }
         self.placed.name(&named, has_ends);
         for (id, input) in inputs {
-            let body = self.scene.get_mut(*id).ok_or_else(|| nobody(*id))?;
+            let body = self.scene.get_mut(*id).ok_or_else(|| empty(*id))?;
             body.put(input);
             self.resident.set_lost(id.index(), false);
         }

@@ -54,7 +54,7 @@ pub struct FeatureTopology {
 
 impl Layout {
     /// Returns a layout without bodies.
-    pub fn nobody() -> Layout {
+    pub fn without_bodies() -> Layout {
         Layout { starts: vec![Offsets::default()], ..Layout::default() }
     }
 
@@ -67,7 +67,7 @@ impl Layout {
 
     /// As [`Layout::new`], for work that may be interrupted: `None` if it was.
     pub fn within(bodies: &[Body], kind: QueryKind, looks: &Looks) -> Option<Layout> {
-        let mut all = Layout::nobody();
+        let mut all = Layout::without_bodies();
         let mut at = Offsets::default();
         let mut faces = Vec::new();
         let mut environments: Vec<u32> = bodies.iter().filter_map(|body| body.filter().environment).collect();

@@ -73,8 +73,8 @@ impl<R: Precision> SceneMemory<R> {
     /// # Errors
     /// Device errors.
     pub fn new(device: Device, bodies: &[Body], parts: &SceneParts) -> Result<Self, Error> {
-        let (nobody, of_faces) = (Layout::nobody(), device.of(purpose::FACES));
-        let (layout, bodies) = if parts.has_vertices { (&*parts.layout, bodies) } else { (&nobody, &[][..]) };
+        let (empty, of_faces) = (Layout::without_bodies(), device.of(purpose::FACES));
+        let (layout, bodies) = if parts.has_vertices { (&*parts.layout, bodies) } else { (&empty, &[][..]) };
         Ok(SceneMemory {
             faces: of_faces.upload(&layout.faces)?,
             vertices: Placing::new(&device.of(purpose::VERTICES), layout, bodies, parts.has_ends)?,

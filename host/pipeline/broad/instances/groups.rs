@@ -3,11 +3,12 @@
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::broad::prefix::along;
+use crate::pipeline::broad::tiles::refit_nodes;
 use crate::pipeline::instances::Instances;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::{launch, purpose};
 use nearmiss_kernels::abi::{
-    BodiesArgs, BodyRecord, FilterArgs, NONE, Node, NodeFilter, RefitTilesArgs, Span, TileFiltersArgs,
+    BodiesArgs, BodyRecord, FilterArgs, NONE, Node, NodeFilter, Span, TileFiltersArgs,
 };
 use nearmiss_kernels::bv::FrameBox;
 use nearmiss_kernels::bvh::tiles::{self, Levels, Part, TILE};
@@ -148,21 +149,7 @@ impl Groups {
     }
 
     fn refit_part(&self, device: &Device, part: usize) -> Result<(), Error> {
-        for level in 2..self.levels.count {
-            let of = |level| self.levels.part(level, part, self.bodies[part]);
-            let (own, below) = (of(level), of(level - 1));
-            let args = RefitTilesArgs {
-                nodes: self.nodes.span(),
-                first: own.first,
-                count: own.count,
-                below: below.first,
-                below_count: below.count,
-                tile: of(0).first,
-                tiles: tiles::below(level),
-            };
-            launch::each::<entry::refit_tiles<FrameBox>>(device, (own.count * tiles::FAN) as usize, &args)?;
-        }
-        Ok(())
+        refit_nodes(device, &self.levels, (part, self.bodies[part]), self.nodes.span())
     }
 
     /// Returns the number of groups of moving bodies.

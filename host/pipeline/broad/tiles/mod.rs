@@ -183,21 +183,7 @@ impl<V: Kernels> Tiles<V> {
 
     /// Refits a part's nodes from the third level on.
     fn refit(&self, device: &Device, part: usize) -> Result<(), Error> {
-        for level in 2..self.levels.count {
-            let of = |level| self.levels.part(level, part, self.triangles[part]);
-            let (own, below) = (of(level), of(level - 1));
-            let args = RefitTilesArgs {
-                nodes: self.nodes.span(),
-                first: own.first,
-                count: own.count,
-                below: below.first,
-                below_count: below.count,
-                tile: of(0).first,
-                tiles: tiles::below(level),
-            };
-            launch::each::<entry::refit_tiles<V>>(device, own.count as usize * tiles::FAN as usize, &args)?;
-        }
-        Ok(())
+        refit_nodes(device, &self.levels, (part, self.triangles[part]), self.nodes.span())
     }
 
     /// Returns the number of moving tiles.
@@ -210,6 +196,33 @@ impl<V: Kernels> Tiles<V> {
         let bodies = if self.has_groups { records } else { Span::EMPTY };
         FilterArgs { nodes: self.filters.span(), bodies }
     }
+}
+
+/// Refits a part's nodes from the third level on; the part has so many items.
+///
+/// # Errors
+/// Device errors.
+pub(super) fn refit_nodes<V: Kernels>(
+    device: &Device,
+    levels: &Levels,
+    (part, items): (usize, u32),
+    nodes: Span<Node<V>>,
+) -> Result<(), Error> {
+    for level in 2..levels.count {
+        let of = |level| levels.part(level, part, items);
+        let (own, below) = (of(level), of(level - 1));
+        let args = RefitTilesArgs {
+            nodes,
+            first: own.first,
+            count: own.count,
+            below: below.first,
+            below_count: below.count,
+            tile: of(0).first,
+            tiles: tiles::below(level),
+        };
+        launch::each::<entry::refit_tiles<V>>(device, own.count as usize * tiles::FAN as usize, &args)?;
+    }
+    Ok(())
 }
 
 /// Lists pairs of tiles, then their pairs of triangles.
