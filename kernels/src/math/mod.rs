@@ -1,11 +1,13 @@
 //! Numbers only: scalars, vectors, rounding.
 
+pub mod angle;
 pub mod ordered;
 mod real;
 pub mod rigid;
 pub mod root;
 pub mod round;
 pub mod tolerance;
+pub mod turn;
 mod vec3;
 
 pub use real::{Parts, Real};

@@ -3,6 +3,8 @@
 
 use core::ops::RangeInclusive;
 
+pub mod turning;
+
 /// Unit roundoff of f32: half the distance from 1 to the next f32. Relative.
 pub const U32: f32 = f32::EPSILON / 2.0;
 /// Unit roundoff of f64: half the distance from 1 to the next f64. Relative.
