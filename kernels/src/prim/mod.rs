@@ -9,6 +9,7 @@
 //! | [`tri_tri`] on signs of [`exact`] | discrete, in integers | always right |
 //! | [`cubic`] | continuous, the coplanarity cubic; the paper's | can miss |
 //! | [`isolate`] | continuous, in closed form | no miss, never late |
+//! | [`turning`] | continuous, of bodies that turn | no miss, never late |
 //! | [`inclusion`] | continuous, by boxes, behind [`isolate`] | no miss, never late |
 //! | [`near`] | distance of two features at rest | proven bounds |
 //! | [`nearest`] | distance of two triangles at rest | proven bounds |
@@ -34,3 +35,4 @@ pub mod signs;
 pub mod stencil;
 pub mod sweep;
 pub mod tri_tri;
+pub mod turning;
