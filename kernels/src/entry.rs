@@ -18,14 +18,15 @@ use crate::stage::fit::{bodies as fit_of_bodies, leaves as fit_of_leaves, rims, 
 use crate::stage::narrow::discrete::{Start, Still};
 use crate::stage::narrow::placed::Placed;
 use crate::stage::narrow::{
-    abreast, below_precision, certain, climb, cull, discrete, features, near, nearest, separate, slice, solve,
+    abreast, below_precision, certain, climb, cull, discrete, divide, features, near, nearest, separate,
+    slice, solve, turning,
 };
 use crate::stage::refit::{levels, tiles as refit_of_tiles, treelets};
 use crate::stage::traverse::instances::{nodes, relations, triangles as instance_triangles};
 use crate::stage::traverse::{
     front, nearest as nearest_first, per_leaf, queue, steal, tile_triangles, tiles as tile_pairs,
 };
-use crate::stage::{balance, order, place, starts, status};
+use crate::stage::{balance, order, place, starts, status, turns};
 use bytemuck::NoUninit;
 use core::marker::PhantomData;
 use lanes::{BALANCE, NARROW, RUNG, SPREAD, WIDE};
@@ -277,6 +278,7 @@ kernels! {
     place_f64: place::place::<f64, B>, [PlaceArgs<f64>], WIDE, place::SHARED;
     place_starts_f32: starts::starts::<f32, B>, [StartsArgs<f32>], WIDE, 0;
     place_starts_f64: starts::starts::<f64, B>, [StartsArgs<f64>], WIDE, 0;
+    place_turns: turns::turns, [TurnsArgs], NARROW, 0;
     construct_bounds_f32: morton::bounds::<f32, B>, [MortonArgs<f32>], WIDE, centres::shared_bytes(WIDE);
     construct_bounds_f64: morton::bounds::<f64, B>, [MortonArgs<f64>], WIDE, centres::shared_bytes(WIDE);
     construct_morton_f32: morton::morton::<f32, B>, [MortonArgs<f32>], WIDE, 0;
@@ -338,6 +340,9 @@ kernels! {
     narrow_separate_f32_f64: separate::separate::<f32, B>, [RungArgs<f32>], RUNG, separate::shared_bytes(RUNG);
     narrow_separate_f64_f32: abreast::abreast::<f64, B>, [RungArgs<f64>], RUNG, abreast::shared_bytes(RUNG);
     narrow_separate_f64_f64: separate::separate::<f64, B>, [RungArgs<f64>], RUNG, separate::shared_bytes(RUNG);
+    narrow_divide: divide::divide, [DivideArgs], WIDE, 0;
+    narrow_turning_features: turning::features, [TurningFeaturesArgs], NARROW, 0;
+    narrow_turning: turning::solve, [TurningArgs], NARROW, 0;
     narrow_near_f32: near::near::<f32, B>, [NearArgs<f32>], RUNG, 0, registers = 64;
     narrow_near_f64: near::near::<f64, B>, [NearArgs<f64>], RUNG, 0;
     narrow_least_f32: nearest::least::<f32, B>, [LeastArgs<f32>], RUNG, 0;

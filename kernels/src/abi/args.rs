@@ -2,7 +2,7 @@
 
 use super::{
     BodyRecord, Counter, Counters, FilterArgs, Inner, LeafPlace, Link, Merge, MortonFlags, Node, NodeFilter,
-    Output, Pair, Point, Span, TraverseFlags, TreeBody, Treelet, Unit, VertexMotion,
+    Output, Pair, Point, Span, TraverseFlags, TreeBody, Treelet, TurnRecord, Unit, VertexMotion,
 };
 use crate::math::Real;
 use bytemuck::{Pod, Zeroable};
@@ -31,12 +31,15 @@ macro_rules! arguments {
 }
 
 arguments! {
-    /// The vertices: in motion, or still; the other is empty.
+    /// The vertices: in motion, or still; the other is empty. Those in motion go straight, except
+    /// those of bodies that turn.
     Positions<R: Real> {
         /// Vertices of a discrete query.
         still: Span<Point<R>>,
         /// Vertices of a continuous query.
         moving: Span<VertexMotion<R>>,
+        /// The bodies that may turn, in the order of their vertices; empty without such.
+        turns: Span<TurnRecord>,
     }
     /// `construct_bounds`, `construct_morton`: triangle centres, their box, their codes.
     MortonArgs<R: Real> {

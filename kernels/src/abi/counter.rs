@@ -146,6 +146,14 @@ counters! { 0;
     NEAREST_PAIRS,
     /// Triangle pairs of a step that share a point at t = 0.
     STARTS_CROSSING,
+    /// Candidate triangle pairs of bodies of which none turns, in a step in which some may.
+    STRAIGHT_PAIRS,
+    /// Candidate triangle pairs of bodies of which one turns.
+    TURNING_PAIRS,
+    /// Vertex/face candidates of those.
+    VF_TURNING,
+    /// Edge/edge candidates of those.
+    EE_TURNING,
     /// Pairs of groups of bodies that overlap.
     GROUP_PAIRS,
     /// Pairs of bodies whose boxes overlap.

@@ -19,6 +19,7 @@ mod span;
 pub mod stamp;
 mod status;
 mod tile;
+mod turns;
 
 pub use args::*;
 pub use counter::{Counter, Counters, MESH_LEVELS, ROUNDS};
@@ -33,3 +34,4 @@ pub use scene::*;
 pub use span::Span;
 pub use status::*;
 pub use tile::*;
+pub use turns::*;

@@ -2,7 +2,7 @@
 
 use super::{
     Begun, BodyTolerance, Counters, DiscreteFlags, Facet, Hit, NearHit, NearestHit, Output, Pair, Point,
-    Positions, RungFlags, Span,
+    Positions, RungFlags, Span, TurnRecord,
 };
 use crate::math::Real;
 use crate::prim::inclusion::Params;
@@ -25,6 +25,36 @@ arguments! {
         gap: f64,
         /// The bits of a time: pairs that first meet later do not matter. Empty if all matter.
         known: Span<u64>,
+    }
+    /// `narrow_divide`: candidates of bodies that turn, and the others.
+    DivideArgs {
+        /// The bodies that may turn.
+        turns: Span<TurnRecord>,
+        /// Vertex indices of every triangle.
+        faces: Span<[u32; 3]>,
+        /// Candidate triangle pairs.
+        pairs: Output<Pair>,
+        /// Out: those of which neither body turns.
+        straight: Output<Pair>,
+        /// Out: the others.
+        turning: Output<Pair>,
+    }
+    /// `narrow_turning_features`: triangle pairs of bodies that turn, to pairs of features.
+    TurningFeaturesArgs {
+        /// Positions.
+        frames: Positions<f64>,
+        /// Vertices of rigid bodies, as they are without a pose.
+        rest: Span<Point<f64>>,
+        /// Every triangle's vertices and edges, and what it owns of them.
+        facets: Span<Facet>,
+        /// Triangle pairs.
+        pairs: Output<Pair>,
+        /// Out: vertex, face.
+        vf: Output<Pair>,
+        /// Out: edge, edge.
+        ee: Output<Pair>,
+        /// Triangles that stay farther apart are left out: a length.
+        gap: f64,
     }
     /// `narrow_moller`, `narrow_filter`, `narrow_wide`, `narrow_exact`, and those of the start of a
     /// step: triangle pairs that meet.
@@ -182,5 +212,12 @@ arguments! {
         flags: RungFlags,
         /// Zero.
         pad: u32,
+    }
+    /// `narrow_turning`: the pairs of bodies that turn, in f64.
+    TurningArgs {
+        /// Pairs, lists, parameters. Lists of the next rung are empty.
+        rung: RungArgs<f64>,
+        /// Vertices of rigid bodies, as they are without a pose.
+        rest: Span<Point<f64>>,
     }
 }

@@ -1,5 +1,6 @@
 //! Nodes of few leaves, whose volume is fitted to the points below them instead of merged.
 
+use super::turns::swell;
 use crate::abi::{Link, Positions, Span};
 use crate::bv::{Points, Volume};
 use crate::exec::Lane;
@@ -31,6 +32,18 @@ impl<R: Real, L: Lane> GroupPoints<'_, R, L> {
     #[inline(always)]
     fn face(&self, leaf: u32) -> [u32; 3] {
         self.lane.read(self.faces, self.lane.read(self.triangles, leaf) as u32)
+    }
+
+    /// The largest swell of the triangles: see [`swell`].
+    #[inline(always)]
+    pub fn swell(&self) -> f32 {
+        if !R::WIDE || self.frames.turns.is_empty() {
+            return 0.0;
+        }
+        let [first, last] = self.leaves;
+        (first..=last)
+            .map(|leaf| swell(self.lane, &self.frames, self.face(leaf)))
+            .fold(0.0, |most, own| if own > most { own } else { most })
     }
 }
 

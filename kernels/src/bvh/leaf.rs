@@ -1,12 +1,13 @@
 //! The volume of a leaf, as `fit` and `refit_treelets` make it.
 
+use super::turns::swell;
 use crate::abi::{Positions, Span};
 use crate::bv::Volume;
 use crate::exec::Lane;
 use crate::math::Real;
 
-/// Around a triangle and all points within `margin` of it. With two frames: at every t in [0, 1].
-/// Rounded outward.
+/// Around a triangle and all points within `margin` of it. With two frames: at every t in [0, 1],
+/// also if it turns. Rounded outward.
 #[inline(always)]
 pub fn volume<R: Real, V: Volume, L: Lane>(
     lane: &L,
@@ -26,11 +27,10 @@ pub fn of_corners<R: Real, V: Volume, L: Lane>(
     face: [u32; 3],
     margin: f32,
 ) -> V {
-    let volume = if frames.moving.is_empty() {
-        V::still(face.map(|v| lane.read(frames.still, v).at))
+    if frames.moving.is_empty() {
+        V::still(face.map(|v| lane.read(frames.still, v).at)).near(margin)
     } else {
         let ends = face.map(|v| lane.read(frames.moving, v));
-        V::moving(ends.map(|v| v.t0.at), ends.map(|v| v.t1.at))
-    };
-    volume.near(margin)
+        V::moving(ends.map(|v| v.t0.at), ends.map(|v| v.t1.at)).near(margin + swell(lane, frames, face))
+    }
 }

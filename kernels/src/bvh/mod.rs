@@ -11,6 +11,7 @@ pub mod pieces;
 pub mod relation;
 pub mod rims;
 pub mod tiles;
+pub mod turns;
 
 use crate::abi::{LEAF, Link, Node, NodeFilter};
 use crate::bv::Volume;

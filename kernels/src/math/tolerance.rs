@@ -3,6 +3,7 @@
 
 use core::ops::RangeInclusive;
 
+pub mod swell;
 pub mod turning;
 
 /// Unit roundoff of f32: half the distance from 1 to the next f32. Relative.

@@ -9,7 +9,6 @@
 //! | [`tri_tri`] on signs of [`exact`] | discrete, in integers | always right |
 //! | [`cubic`] | continuous, the coplanarity cubic; the paper's | can miss |
 //! | [`isolate`] | continuous, in closed form | no miss, never late |
-//! | [`turning`] | continuous, of bodies that turn | no miss, never late |
 //! | [`inclusion`] | continuous, by boxes, behind [`isolate`] | no miss, never late |
 //! | [`near`] | distance of two features at rest | proven bounds |
 //! | [`nearest`] | distance of two triangles at rest | proven bounds |
@@ -19,6 +18,7 @@
 
 pub mod adjacent;
 pub mod at_once;
+pub mod balls;
 pub mod cubic;
 pub mod direction;
 pub mod exact;

@@ -43,3 +43,4 @@ pub mod refit;
 pub mod starts;
 pub mod status;
 pub mod traverse;
+pub mod turns;

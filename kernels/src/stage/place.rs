@@ -64,7 +64,7 @@ fn row<L: Lane, const N: usize>(lane: &L, lent: &Lent, row: u32) -> [f64; N] {
 
 /// The root of the sum of a rotation's squares.
 #[inline(always)]
-fn length(rotation: &[f64; 4]) -> f64 {
+pub(super) fn length(rotation: &[f64; 4]) -> f64 {
     let [x, y, z, w] = *rotation;
     Real::sqrt(x * x + y * y + z * z + w * w)
 }

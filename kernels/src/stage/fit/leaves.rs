@@ -59,7 +59,7 @@ pub fn groups<R: Real, V: Volume, B: Block>(block: &mut B, args: &GroupsArgs<R, 
                 lane.write(
                     args.nodes,
                     lane.read(args.pair_parents, pair),
-                    link.with(volume.near(args.margin)),
+                    link.with(volume.near(args.margin + points.swell())),
                 );
             }
             pair += stride;

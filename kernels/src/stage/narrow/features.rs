@@ -56,7 +56,7 @@ fn common(p: &Facet, q: &Facet) -> [u32; 3] {
 /// Bits of the tests that two triangles own. 0 to 2: a vertex of p and q. 3 to 5: a vertex of q and
 /// p. 6 + 3 i + j: edge i of p and edge j of q. Features that share a vertex have no bit.
 #[inline(always)]
-fn owned(p: &Facet, q: &Facet) -> u32 {
+pub(super) fn owned(p: &Facet, q: &Facet) -> u32 {
     let rows = common(p, q);
     let (of_p, of_q) = (p.owned, q.owned);
     let mut mask = of_q & 7 & !(rows[0] | rows[1] | rows[2]);
@@ -159,7 +159,7 @@ pub const fn shared_bytes(lanes: u32) -> u32 {
 }
 
 /// Bits of [`owned`] that are vertices and faces.
-const VERTICES: u32 = 63;
+pub(super) const VERTICES: u32 = 63;
 /// Counts of both kinds in one word: at most 15 a lane, so blocks of up to 1,024 lanes fit 16 bits.
 const EE: u32 = 1 << 16;
 
@@ -327,15 +327,16 @@ impl<R: Real, C: Course<R>, B: Block, const HORIZON: bool> Tests<R, C, B, HORIZO
             lane.meet();
         });
         block.phase(|lane| {
+            let facet = |triangle| lane.read(args.facets, triangle);
             let mut i = lane.lane();
             while i < vf + ee {
                 let test = lane.get(listed, i);
                 let (pair, k) = (pair_of(lane, test / TESTS), test % TESTS);
                 if i < vf {
-                    args.vf.put(lane, starts[0] + i as u64, vertex_and_face(lane, args, pair, k));
+                    args.vf.put(lane, starts[0] + i as u64, vertex_and_face(&facet, pair, k));
                 } else {
                     let place = starts[1] + (i - vf) as u64;
-                    args.ee.put(lane, place, two_edges(lane, args, pair, k - 6));
+                    args.ee.put(lane, place, two_edges(&facet, pair, k - 6));
                 }
                 i += lanes;
             }
@@ -346,15 +347,15 @@ impl<R: Real, C: Course<R>, B: Block, const HORIZON: bool> Tests<R, C, B, HORIZO
 
 /// Test 0 to 5: a vertex of the first triangle and the second, or the other way round.
 #[inline(always)]
-fn vertex_and_face<R: Real, L: Lane>(lane: &L, args: &FeaturesArgs<R>, pair: Pair, test: u32) -> Pair {
+pub(super) fn vertex_and_face(facet: impl Fn(u32) -> Facet, pair: Pair, test: u32) -> Pair {
     let (of, face, k) = if test < 3 { (pair.a, pair.b, test) } else { (pair.b, pair.a, test - 3) };
-    Pair { a: pick(lane.read(args.facets, of).corners, k), b: face }
+    Pair { a: pick(facet(of).corners, k), b: face }
 }
 
 /// Test 6 to 14, less 6: an edge of each.
 #[inline(always)]
-fn two_edges<R: Real, L: Lane>(lane: &L, args: &FeaturesArgs<R>, pair: Pair, test: u32) -> Pair {
-    let edge = |of: u32, k: u32| pick(lane.read(args.facets, of).edges, k);
+pub(super) fn two_edges(facet: impl Fn(u32) -> Facet, pair: Pair, test: u32) -> Pair {
+    let edge = |of: u32, k: u32| pick(facet(of).edges, k);
     let (x, y) = (edge(pair.a, test / 3), edge(pair.b, test % 3));
     Pair { a: x.min(y), b: x.max(y) }
 }

@@ -15,6 +15,8 @@
 //!
 //! The certified solver is the rungs of [`climb`] and [`mod@slice`], or with a separation of
 //! [`abreast`] and [`separate`]: they find contacts and bound their first times, with proof. The paper's solver is [`solve`], by the cubic.
+//! Pairs of bodies that turn take another way: [`divide`] takes them out of the candidates, and
+//! [`turning`] tests them on their paths.
 //! [`below_precision`] counts contacts that are too large for the tolerance, if any can be.
 
 pub mod abreast;
@@ -23,6 +25,7 @@ pub mod certain;
 pub mod climb;
 pub mod cull;
 pub mod discrete;
+pub mod divide;
 pub mod features;
 pub mod near;
 pub mod nearest;
@@ -30,6 +33,7 @@ pub mod placed;
 pub mod separate;
 pub mod slice;
 pub mod solve;
+pub mod turning;
 
 use crate::abi::{BodyTolerance, DiscreteArgs, Output, Pair, Point, Positions, RungArgs, Span, earliest};
 use crate::bvh::course::moving;
