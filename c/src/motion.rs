@@ -174,7 +174,7 @@ impl NearmissMotion {
             0 => HostMotion::Positions(points(0)?),
             1 => HostMotion::Step([points(0)?, points(1)?]),
             2 => HostMotion::Other(Motion::Pose(self.poses[0].into())),
-            3 => HostMotion::Other(Motion::PoseStep(self.poses.map(Pose::from))),
+            3 => HostMotion::Other(Motion::PoseStep(self.poses.map(Pose::from).into())),
             _ => return Err(self.no_such_kind()),
         })
     }

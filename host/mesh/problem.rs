@@ -79,6 +79,17 @@ pub enum Problem {
         /// The largest coordinate, rounded up.
         size: f64,
     },
+    /// A pivot or a rotation vector that is not finite, or a turn of more than a whole one.
+    #[error(
+        "turns by {turn:?} about {pivot:?}; give a finite pivot and a rotation vector of at most 2 pi, in radians: \
+         divide a longer step"
+    )]
+    NoTurn {
+        /// The pivot, as passed.
+        pivot: [f64; 3],
+        /// The rotation vector, as passed; zeros for the shorter arc.
+        turn: [f64; 3],
+    },
     /// An index of a vertex that does not exist, in a face.
     #[error(
         "face {face} corner {corner} names vertex {index}, but there are {vertices} vertices, counted from 0: \

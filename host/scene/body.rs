@@ -1,11 +1,12 @@
 //! A body: one mesh at one frame or at both ends of a step, with its kind and filter.
 
 use super::place::radius;
-use super::{BodyKind, CollisionFilter, DeviceMotion, Pose};
+use super::{BodyKind, CollisionFilter, DeviceMotion, Path, Pose, PoseStep};
 use crate::Error;
 #[cfg(doc)]
 use crate::mesh::Problem;
 use crate::mesh::{Mesh, Positions, Vertices, difference, rename};
+use nearmiss_kernels::math::Vec3;
 
 /// Faces with the positions of one frame, or of both ends of a step. Vertices move in straight
 /// lines from `positions_t0` to `positions_t1`, which have the same length and precision.
@@ -19,6 +20,8 @@ pub struct Body {
     pub(super) filter: CollisionFilter,
     /// Poses of a rigid body at both ends of the step.
     pub(super) poses: [Pose; 2],
+    /// Its path between them.
+    pub(super) path: Path,
     /// Radius of a rigid body: no vertex of a face is farther from the centre of rotation.
     pub(super) radius: f64,
     /// Default tolerance of the original mesh, once it was computed.
@@ -62,6 +65,7 @@ impl Body {
             kind: BodyKind::Deformable,
             filter: CollisionFilter::default(),
             poses: [Pose::default(); 2],
+            path: Path::default(),
             radius: 0.0,
             tolerance: Kept::default(),
             resident: None,
@@ -125,6 +129,25 @@ impl Body {
     /// device-resident](Body::is_device_resident).
     pub fn poses(&self) -> [Pose; 2] {
         self.poses
+    }
+
+    /// Step of a rigid body: its poses at both ends, and the path between them; stale as
+    /// [`Body::poses`] is.
+    pub fn pose_step(&self) -> PoseStep {
+        PoseStep::along(self.poses, self.path)
+    }
+
+    /// Whether its vertices go straight between its poses, by choice. A body whose poses only the
+    /// device has turns.
+    pub(crate) fn is_straight(&self) -> bool {
+        self.path == Path::Straight && !self.is_device_resident()
+    }
+
+    /// Returns the pivot and the rotation vector of a rigid body with these poses. `None` if it does
+    /// not turn, or its vertices go straight.
+    pub(crate) fn turn(&self) -> Option<([f64; 3], Vec3<f64>)> {
+        let is_rigid = self.kind == BodyKind::Rigid && !self.faces.is_empty();
+        if is_rigid { self.path.turn(self.poses) } else { None }
     }
 
     /// A body at two frames of the same faces. If one frame is in single and one in double

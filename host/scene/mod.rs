@@ -8,6 +8,7 @@ mod device_motion;
 mod motion;
 mod place;
 mod pose;
+mod pose_step;
 mod sides;
 
 pub use body::Body;
@@ -15,6 +16,7 @@ pub use device_motion::{DeviceMotion, DevicePose, DeviceRows, Number};
 pub use motion::Motion;
 pub(crate) use place::{Bounds, NOTHING, union};
 pub use pose::Pose;
+pub use pose_step::{Path, PoseStep};
 #[doc(hidden)]
 pub use sides::{mean_side, of_edges};
 

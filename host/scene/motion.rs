@@ -1,6 +1,6 @@
 //! Motion of a body in a step.
 
-use super::{DeviceMotion, Pose};
+use super::{DeviceMotion, Pose, PoseStep};
 use crate::mesh::Points;
 
 /// Place of a body at a frame, or at both ends of a step. It borrows positions. The body's topology
@@ -27,10 +27,11 @@ pub enum Motion<'a> {
     Step([Points<'a>; 2]),
     /// A rigid body stands in this pose.
     Pose(Pose),
-    /// A rigid body moves from the first pose to the second, **each vertex in a straight line**.
-    /// Between the poses it is not rigid. Use steps in which it turns little.
-    PoseStep([Pose; 2]),
-    /// Positions or poses in device memory.
+    /// A rigid body moves from one pose to another. It turns at a constant rate about a pivot, or its
+    /// vertices go straight.
+    PoseStep(PoseStep),
+    /// Positions or poses in device memory. Between two poses a body turns by the shorter arc, about
+    /// the origin of its mesh.
     OnDevice(DeviceMotion),
 }
 
@@ -52,9 +53,10 @@ impl<'a> Motion<'a> {
         Motion::Pose(pose.into())
     }
 
-    /// A rigid body moves from the first pose to the second, each vertex in a straight line.
+    /// A rigid body moves from the first pose to the second. It turns by the shorter arc, about the
+    /// origin of its mesh.
     pub fn pose_step(start: impl Into<Pose>, end: impl Into<Pose>) -> Motion<'a> {
-        Motion::PoseStep([start.into(), end.into()])
+        Motion::PoseStep(PoseStep::new(start, end))
     }
 
     /// Whether it has two ends.

@@ -1,7 +1,7 @@
 //! Placing of a body from frame to frame.
 
 use super::body::{Kept, Resident};
-use super::{Body, BodyKind, DeviceMotion, Motion, Pose, of_edges};
+use super::{Body, BodyKind, DeviceMotion, Motion, Path, Pose, PoseStep, of_edges};
 use crate::Error;
 use crate::mesh::{self, MAX_ABS_F64, Points, Positions, Problem};
 use nearmiss_kernels::math::Vec3;
@@ -42,9 +42,7 @@ impl Body {
             (BodyKind::Deformable, Motion::Positions(t0)) => self.check_vertices(&[*t0]),
             (BodyKind::Deformable, Motion::Step(ends)) => self.check_vertices(ends),
             (BodyKind::Rigid, Motion::Pose(pose)) => self.check_pose(pose),
-            (BodyKind::Rigid, Motion::PoseStep([t0, t1])) => {
-                self.check_pose(t0).and_then(|()| self.check_pose(t1))
-            }
+            (BodyKind::Rigid, Motion::PoseStep(step)) => self.check_step(step),
             (BodyKind::Deformable, Motion::OnDevice(DeviceMotion::Positions(t0))) => {
                 self.check_rows(&[t0.len()])
             }
@@ -110,6 +108,14 @@ impl Body {
         Ok(())
     }
 
+    /// Checks both poses and the path: numbers that are finite, at most a whole turn, and a turn that
+    /// leads from the first rotation to the second.
+    fn check_step(&self, step: &PoseStep) -> Result<(), Error> {
+        self.check_pose(&step.start())?;
+        step.check(&self.name)?;
+        self.check_pose(&step.end())
+    }
+
     /// Default tolerance of a certified solver for the body's original mesh, in scene units. It
     /// stays when the body moves. 0 if no side of a triangle has a length. Cost: a square root for
     /// each side, once.
@@ -131,9 +137,14 @@ impl Body {
             }
             Motion::Positions(t0) => self.put_vertices(*t0, None),
             Motion::Step([t0, t1]) => self.put_vertices(*t0, Some(*t1)),
-            Motion::Pose(pose) => self.poses = [*pose; 2],
-            Motion::PoseStep(poses) => self.poses = *poses,
+            Motion::Pose(pose) => self.stand(*pose),
+            Motion::PoseStep(step) => (self.poses, self.path) = ([step.start(), step.end()], step.path()),
         }
+    }
+
+    /// Stands in a pose.
+    fn stand(&mut self, pose: Pose) {
+        (self.poses, self.path) = ([pose; 2], Path::default());
     }
 
     fn put_vertices(&mut self, t0: Points, t1: Option<Points>) {
@@ -190,8 +201,10 @@ impl Body {
         let moving = self.is_moving();
         self.resident = None;
         match (self.kind, ends, poses) {
-            (BodyKind::Rigid, _, [start, end]) if moving => self.poses = [*start, *end],
-            (BodyKind::Rigid, _, [.., end]) => self.poses = [*end; 2],
+            (BodyKind::Rigid, _, [start, end]) if moving => {
+                (self.poses, self.path) = ([*start, *end], Path::default());
+            }
+            (BodyKind::Rigid, _, [.., end]) => self.stand(*end),
             (_, [t0, t1], _) if moving => self.put_vertices(t0.into(), Some(t1.into())),
             (_, [.., end], _) => self.put_vertices(end.into(), None),
             (_, [], _) => {}
@@ -210,8 +223,9 @@ impl Body {
             BodyKind::Fixed => false,
             BodyKind::Rigid => {
                 let [start, end] = self.poses;
-                self.poses = [end; 2];
-                start != end
+                let moved = start != end || self.turn().is_some();
+                self.stand(end);
+                moved
             }
             BodyKind::Deformable => match self.positions_t1.take() {
                 Some(end) => {

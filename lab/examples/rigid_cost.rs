@@ -76,7 +76,9 @@ fn main() -> Result<(), Error> {
             for frame in 0..=FRAMES {
                 let inputs: Vec<(BodyId, Motion)> = ids
                     .iter()
-                    .map(|&id| (id, Motion::PoseStep([frame, frame + 1].map(|at| pose(id.index(), at)))))
+                    .map(|&id| {
+                        (id, Motion::PoseStep(([frame, frame + 1].map(|at| pose(id.index(), at))).into()))
+                    })
                     .collect();
                 let contacts = detector.frame(&inputs)?;
                 if frame > 0 {

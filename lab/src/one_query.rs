@@ -106,7 +106,7 @@ impl OneQuery {
             let id = self.detector.scene().id(body);
             let id = id.ok_or_else(|| Error::Bug { what: format!("there is no body {body}") })?;
             let motion = match (frame.kind(), frame.positions_t1()) {
-                (nearmiss::scene::BodyKind::Rigid, _) => Motion::PoseStep(frame.poses()),
+                (nearmiss::scene::BodyKind::Rigid, _) => Motion::PoseStep(frame.pose_step()),
                 (_, None) => Motion::positions(frame.positions_t0()),
                 (_, Some(end)) => Motion::step(frame.positions_t0(), end),
             };

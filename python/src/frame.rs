@@ -96,7 +96,9 @@ impl Frame {
             if let [Ok(a), Ok(b)] = [&ends[0], &ends[1]].map(|end| end.cast::<Pose>()) {
                 let [a, b] = [a.get().given(py, device)?, b.get().given(py, device)?];
                 return match (a, b) {
-                    (GivenPose::Known(a), GivenPose::Known(b)) => Ok(Given::Known(Motion::PoseStep([a, b]))),
+                    (GivenPose::Known(a), GivenPose::Known(b)) => {
+                        Ok(Given::Known(Motion::PoseStep([a, b].into())))
+                    }
                     (GivenPose::Borrowed(a, held), GivenPose::Borrowed(b, more)) => {
                         self.held.extend(held.into_iter().chain(more));
                         Ok(Given::Known(Motion::OnDevice(DeviceMotion::PoseStep([a, b]))))

@@ -27,7 +27,7 @@ fn met(query: Query, seed: u64) -> (OneQuery, Contacts) {
     let rigid = scene.add(Body::rigid(soup(50, seed + 100).0));
     scene.add(Body::fixed(soup(40, seed + 200).0));
     let mut detector = OneQuery::new(engine(), scene, query).expect("a detector");
-    let slides = Motion::PoseStep([Pose::default(), Pose::at([0.25, 0.0, -0.125])]);
+    let slides = Motion::PoseStep([Pose::default(), Pose::at([0.25, 0.0, -0.125])].into());
     let found = detector.frame(&[(cloth, Motion::step(&t0, &t1)), (rigid, slides)]).expect("an answer");
     (detector, found)
 }

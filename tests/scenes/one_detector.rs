@@ -67,7 +67,7 @@ impl Step {
 
     fn motions(&self, bodies: &Bodies) -> [(BodyId, Motion<'_>); 2] {
         let [start, end] = &self.cloth;
-        [(bodies.cloth, Motion::step(start, end)), (bodies.ball, Motion::PoseStep(self.ball))]
+        [(bodies.cloth, Motion::step(start, end)), (bodies.ball, Motion::PoseStep(self.ball.into()))]
     }
 }
 

@@ -8,7 +8,7 @@ mod rests;
 
 use nearmiss::mesh::Positions;
 use nearmiss::research::QueryExt;
-use nearmiss::scene::{BodyId, CollisionFilter, Motion, Pose, Scene};
+use nearmiss::scene::{BodyId, CollisionFilter, Motion, Pose, PoseStep, Scene};
 use nearmiss::{Body, Contacts, Mesh, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;

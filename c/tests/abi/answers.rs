@@ -18,7 +18,8 @@ fn library(query: Query, of: &Body, other: &Body, poses: [Pose; 2]) -> (Detector
     let device = Device::open(Backend::Cpu, Some(2)).expect("threads");
     let mut detector = Detector::new(device, scene).expect("a detector");
     let [t0, t1] = of.ends();
-    let found = detector.step(&[(first, Motion::step(t0, t1)), (second, Motion::PoseStep(poses))], &query);
+    let found =
+        detector.step(&[(first, Motion::step(t0, t1)), (second, Motion::PoseStep(poses.into()))], &query);
     (detector, found.expect("an answer"))
 }
 

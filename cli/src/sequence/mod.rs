@@ -42,7 +42,7 @@ impl Track {
             Track::Positions(all) if at_rest => Some(Motion::positions(&all[at])),
             Track::Positions(all) => Some(Motion::step(&all[at], &all[at + 1])),
             Track::Poses(all) if at_rest => Some(Motion::pose(all[at])),
-            Track::Poses(all) => Some(Motion::PoseStep([all[at], all[at + 1]])),
+            Track::Poses(all) => Some(Motion::PoseStep([all[at], all[at + 1]].into())),
         }
     }
 }

@@ -121,7 +121,8 @@ impl<R: Precision> Run<'_, R> {
         self.counters.write(&self.counts)?;
         let given = NarrowContext {
             device: self.device,
-            frames: Positions { still: Span::EMPTY, moving: self.vertices.span() },
+            frames: Positions { still: Span::EMPTY, moving: self.vertices.span(), turns: Span::EMPTY },
+            rest: Span::EMPTY,
             faces: self.faces.span(),
             pairs: Output::EMPTY,
             bodies: Span::EMPTY,

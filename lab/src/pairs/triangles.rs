@@ -98,7 +98,8 @@ fn some<R: Precision>(device: &Device, mesh: &Mesh, test: TriangleTest) -> Resul
         let features = Features::none(device)?;
         let given = NarrowContext {
             device,
-            frames: abi::Positions { still: points.span(), moving: Span::EMPTY },
+            frames: abi::Positions { still: points.span(), moving: Span::EMPTY, turns: Span::EMPTY },
+            rest: Span::EMPTY,
             faces: faces.span(),
             pairs: list.output(counters.counters()),
             bodies: Span::EMPTY,

@@ -38,7 +38,7 @@ impl Move {
     /// Returns the motion as a detector takes it.
     pub fn input(&self) -> Motion<'_> {
         match self {
-            Move::Poses(poses) => Motion::PoseStep(*poses),
+            Move::Poses(poses) => Motion::PoseStep((*poses).into()),
             Move::Step([t0, t1]) => Motion::step(t0, t1),
         }
     }

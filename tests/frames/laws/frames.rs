@@ -30,7 +30,7 @@ impl Place {
             Place::Vertices([t0, t1]) if t0 == t1 && !at_both => Motion::positions(t0),
             Place::Vertices([t0, t1]) => Motion::step(t0, t1),
             Place::Poses([start, end]) if start == end && !at_both => Motion::pose(*start),
-            Place::Poses(poses) => Motion::PoseStep(*poses),
+            Place::Poses(poses) => Motion::PoseStep((*poses).into()),
             Place::Fixed => return None,
         })
     }

@@ -30,7 +30,7 @@ fn other_queries_in_between_change_nothing() {
         .iter()
         .map(|&(id, motion)| {
             let Motion::Pose(pose) = motion else { panic!("a pose") };
-            (id, Motion::PoseStep([pose, Pose { translation: [0.0; 3], ..pose }]))
+            (id, Motion::PoseStep([pose, Pose { translation: [0.0; 3], ..pose }].into()))
         })
         .collect();
     for detector in [&mut both.own, &mut both.judge] {

@@ -116,7 +116,8 @@ fn differences(rounded: bool) -> Vec<String> {
                 // The straight motion of a turn is a caveat of poses alone.
                 (found.rows, geometry)
             };
-            let poses = steps.iter().map(|(poses, _)| Motion::PoseStep(*poses)).collect();
+            let poses =
+                steps.iter().map(|(poses, _)| Motion::PoseStep(PoseStep::from(*poses).straight())).collect();
             let ends = steps.iter().map(|(_, [t0, t1])| Motion::step(t0, t1)).collect();
             if frame(&by_pose, poses) != frame(&by_host, ends) {
                 different.push(format!("{query:?} at {place:?}"));

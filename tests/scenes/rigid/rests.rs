@@ -47,7 +47,7 @@ impl Place {
             Place::Points([start, end]) if start == end => Some(Motion::positions(start)),
             Place::Points([start, end]) => Some(Motion::step(start, end)),
             Place::Poses([start, end]) if start == end => Some(Motion::pose(*start)),
-            Place::Poses(poses) => Some(Motion::PoseStep(*poses)),
+            Place::Poses(poses) => Some(Motion::PoseStep((*poses).into())),
             Place::Fixed => None,
         }
     }

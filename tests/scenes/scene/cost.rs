@@ -43,7 +43,7 @@ fn cost(scene: Scene, motion: QueryKind) -> (u64, u64, usize) {
         let pose = Pose::at([0.0, 0.0, lift]);
         let input = |id: BodyId| match (bodies[id.index()].kind(), motion.is_at_rest()) {
             (BodyKind::Rigid, true) => Some(Motion::pose(pose)),
-            (BodyKind::Rigid, false) => Some(Motion::PoseStep([pose; 2])),
+            (BodyKind::Rigid, false) => Some(Motion::PoseStep([pose; 2].into())),
             (BodyKind::Deformable, true) => Some(Motion::positions(bodies[id.index()].positions_t0())),
             (BodyKind::Deformable, false) => {
                 Some(Motion::step(bodies[id.index()].positions_t0(), bodies[id.index()].positions_t0()))

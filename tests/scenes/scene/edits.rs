@@ -38,7 +38,7 @@ fn frames_move_what_they_name_and_others_rest() {
             let inputs: Vec<(BodyId, Motion)> = moved
                 .iter()
                 .map(|(id, ends, poses)| match scene.bodies()[id.index()].kind() {
-                    BodyKind::Rigid => (*id, Motion::PoseStep(*poses)),
+                    BodyKind::Rigid => (*id, Motion::PoseStep((*poses).into())),
                     _ if steps => (*id, Motion::step(&ends[0], &ends[1])),
                     _ => (*id, Motion::positions(&ends[1])),
                 })
@@ -64,7 +64,7 @@ fn bodies_come_and_go() {
     let mut detector = OneQuery::new(engine(), mixed(4), query()).expect("a detector");
     let before = detector.detect().expect("an answer");
     let added = detector.add(Body::rigid(crate_mesh.clone())).expect("room");
-    let moves = Motion::PoseStep([Pose::default(), Pose::at([0.3, 0.0, 0.0])]);
+    let moves = Motion::PoseStep([Pose::default(), Pose::at([0.3, 0.0, 0.0])].into());
     let found = detector.frame(&[(added, moves)]).expect("an answer");
     assert!(found.contacts().iter().any(|contact| contact.bodies.contains(&added)));
     same_as_new(&detector, &found, "added");
@@ -91,7 +91,7 @@ fn a_scene_goes_over_to_doubles_once_and_stays_exact() {
     let near = detector.detect().expect("an answer");
     assert!(!near.is_empty());
     // A rigid body that its pose takes beyond what f32 can be computed with, and one in doubles.
-    let poses = Motion::PoseStep([Pose::default(), Pose::at([far, 0.0, 0.0])]);
+    let poses = Motion::PoseStep([Pose::default(), Pose::at([far, 0.0, 0.0])].into());
     let found = detector.frame(&[(ball, poses)]).expect("an answer");
     same_as_new(&detector, &found, "far");
     let doubles = Positions::F64(ends[1].to_f64().iter().map(|p| p.map(|x| x + 1e-12)).collect());

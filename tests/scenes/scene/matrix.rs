@@ -18,7 +18,7 @@ fn plan(scene: &Scene, motion: QueryKind) -> Plan {
             let poses = [0.0, 0.01].map(|lift| Pose::at([0.0, 0.0, lift]));
             match (body.kind(), at_rest) {
                 (BodyKind::Rigid, true) => Some((id, Motion::pose(poses[1]))),
-                (BodyKind::Rigid, false) => Some((id, Motion::PoseStep(poses))),
+                (BodyKind::Rigid, false) => Some((id, Motion::PoseStep(poses.into()))),
                 (BodyKind::Deformable, true) => Some((id, Motion::positions(t0))),
                 (BodyKind::Deformable, false) => Some((id, Motion::step(t0, t0))),
                 _ => None,

@@ -54,7 +54,7 @@ fn planned(device: &Device, scene: Scene, query: Query) -> (Plan, u64, u64) {
             let (pose, t0) = (Pose::at([0.0, 0.0, 0.1]), bodies[id.index()].positions_t0());
             let input = match (bodies[id.index()].kind(), query.kind().is_at_rest()) {
                 (BodyKind::Rigid, true) => Motion::pose(pose),
-                (BodyKind::Rigid, false) => Motion::PoseStep([pose; 2]),
+                (BodyKind::Rigid, false) => Motion::PoseStep([pose; 2].into()),
                 (BodyKind::Deformable, true) => Motion::positions(t0),
                 (BodyKind::Deformable, false) => Motion::step(t0, t0),
                 _ => return None,

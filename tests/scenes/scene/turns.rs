@@ -1,8 +1,10 @@
-//! A body that turns far in a step is named, with how far its vertices leave their arcs.
+//! A body that turns far in a step while its vertices go straight is named, with how far they leave
+//! their arcs.
 
 use super::*;
 use nearmiss::contacts::{Caveat, TURN_DEGREES};
-use nearmiss::scene::{DeviceMotion, DevicePose, DeviceRows, Number};
+use nearmiss::research::Solver;
+use nearmiss::scene::{DeviceMotion, DevicePose, DeviceRows, Number, PoseStep};
 
 /// A pose turned about z.
 fn turned(degrees: f64) -> Pose {
@@ -49,7 +51,9 @@ fn a_turn_of_more_than_thirty_degrees_is_named_with_its_bulge() {
             ([turned(0.0), minus(turned(20.0))], None),
             ([turned(0.0), minus(turned(60.0))], Some((60.0, 2.0 - 3f64.sqrt()))),
         ] {
-            let found = detector.frame(&[(bar, Motion::PoseStep(ends))]).expect("an answer");
+            let found = detector
+                .frame(&[(bar, Motion::PoseStep(PoseStep::from(ends).straight()))])
+                .expect("an answer");
             match (&turns(&found)[..], expected) {
                 ([], None) => {}
                 (&[(body, degrees, bulge)], Some((angle, arc))) => {
@@ -77,15 +81,18 @@ fn a_turn_of_more_than_thirty_degrees_is_named_with_its_bulge() {
 fn a_query_at_rest_and_a_body_that_is_not_rigid_have_no_turn() {
     let (scene, bar) = bar();
     let mut detector = OneQuery::new(engine(), scene, Query::discrete()).expect("a detector");
-    let found = detector.frame(&[(bar, Motion::PoseStep([turned(0.0), turned(180.0)]))]).expect("an answer");
+    let found =
+        detector.frame(&[(bar, Motion::PoseStep([turned(0.0), turned(180.0)].into()))]).expect("an answer");
     assert_eq!(turns(&found), []);
 }
 
-/// Poses that only the device knows are found there, in a frame and in a submission.
+/// Poses that only the device knows are found there, in a frame and in a submission. A solver without
+/// a proof goes straight between them.
 #[test]
 fn poses_of_the_device_are_judged_too() {
     let (scene, bar) = bar();
-    let mut detector = OneQuery::new(engine(), scene, Query::continuous()).expect("a detector");
+    let cubic = support::asked::by(QueryKind::Continuous, Solver::CubicF64);
+    let mut detector = OneQuery::new(engine(), scene, cubic).expect("a detector");
     let mut rotations = [turned(0.0).rotation, turned(10.0).rotation];
     let still = [[0.0f64; 3]; 1];
     // SAFETY: both outlive the detector's use of them, on a CPU; nothing writes while a call runs.

@@ -224,8 +224,11 @@ fn a_pose_that_is_none_is_named() {
         let input = input(pose);
         let found = detector.frame(&[(rigid, Motion::OnDevice(input))]).expect("an answer");
         let mut by_host = OneQuery::new(engine(), scene.clone(), query(kind)).expect("a detector");
-        let input =
-            if at_rest { Motion::pose(Pose::default()) } else { Motion::PoseStep([Pose::default(); 2]) };
+        let input = if at_rest {
+            Motion::pose(Pose::default())
+        } else {
+            Motion::PoseStep([Pose::default(); 2].into())
+        };
         let wanted = by_host.frame(&[(rigid, input)]).expect("an answer");
         assert_eq!(found.rows, wanted.rows, "{kind:?}");
     }

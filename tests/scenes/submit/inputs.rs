@@ -88,7 +88,7 @@ fn poses_on_the_device_are_poses() {
         let mut detector = OneQuery::new(device.clone(), scene.clone(), query(kind)).expect("a detector");
         for frame in 0..4 {
             let ends = [pose(frame as f64), pose(frame as f64 + 1.0)];
-            let wanted = by_host.frame(&[(rigid, Motion::PoseStep(ends))]).expect("an answer");
+            let wanted = by_host.frame(&[(rigid, Motion::PoseStep(ends.into()))]).expect("an answer");
             let held = ends.map(|pose| pose_rows(&device, &pose, |x| x, Number::F64));
             let input = DeviceMotion::PoseStep(held.each_ref().map(|(_, rows)| *rows));
             let found = detector.frame(&[(rigid, Motion::OnDevice(input))]).expect("an answer");
@@ -117,7 +117,7 @@ fn poses_on_the_device_are_poses() {
             rotation: single.rotation.map(|x| f64::from(x as f32)),
             translation: single.translation.map(|x| f64::from(x as f32)),
         };
-        let input = if at_rest { Motion::pose(single) } else { Motion::PoseStep([single; 2]) };
+        let input = if at_rest { Motion::pose(single) } else { Motion::PoseStep([single; 2].into()) };
         let wanted = by_host.frame(&[(rigid, input)]).expect("an answer");
         assert_eq!(found.rows, wanted.rows, "{kind:?}");
     }

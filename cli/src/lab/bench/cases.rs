@@ -170,7 +170,7 @@ pub fn inputs(scene: &Scene) -> Vec<(BodyId, Motion<'_>)> {
     let input = |id| {
         let body = scene.get(id)?;
         let to = match body.kind() {
-            BodyKind::Rigid => Motion::PoseStep(body.poses()),
+            BodyKind::Rigid => Motion::PoseStep(body.pose_step()),
             BodyKind::Deformable if body.is_moving() => Motion::Step(body.ends().map(Into::into)),
             BodyKind::Deformable => Motion::positions(body.positions_t0()),
             // Other kinds do not move.
