@@ -18,6 +18,8 @@ pub struct Stats {
     pub candidates: u64,
     /// Candidates by kind: vertex/face, edge/edge. Zero for discrete queries.
     pub candidates_vf_ee: [u64; 2],
+    /// Candidates of bodies that turn, tested on their arcs: vertex/face, edge/edge.
+    pub turning_vf_ee: [u64; 2],
     /// Candidates that signs alone could not reject: vertex/face, edge/edge.
     pub survivors_vf_ee: [u64; 2],
     /// Candidates escalated from f32 to f64: vertex/face, edge/edge.
@@ -58,6 +60,7 @@ impl Stats {
         let pairs =
             |own: &mut [u64; 2], other: [u64; 2]| own.iter_mut().zip(other).for_each(|(own, n)| *own += n);
         pairs(&mut self.candidates_vf_ee, share.candidates_vf_ee);
+        pairs(&mut self.turning_vf_ee, share.turning_vf_ee);
         pairs(&mut self.survivors_vf_ee, share.survivors_vf_ee);
         pairs(&mut self.escalated_vf_ee, share.escalated_vf_ee);
         pairs(&mut self.open_vf_ee, share.open_vf_ee);

@@ -32,7 +32,8 @@ pub fn collect(
 ) -> Result<Contacts, Error> {
     memory::require("the contacts", found.bytes())?;
     let count = |which| found.counters[which];
-    let vf_ee = [count(counter::VF), count(counter::EE)];
+    let turning = [count(counter::VF_TURNING), count(counter::EE_TURNING)];
+    let vf_ee = [count(counter::VF) + turning[0], count(counter::EE) + turning[1]];
     let of_triangles = matches!(found.listed, Listed::Pairs(_) | Listed::Nearest(_));
     let starts_crossing = found.is_start_checked.then(|| count(counter::STARTS_CROSSING));
     let undecided = match found.listed {
@@ -47,6 +48,7 @@ pub fn collect(
         triangle_pairs: count(counter::PAIRS),
         candidates: if of_triangles { count(counter::PAIRS) } else { vf_ee[0] + vf_ee[1] },
         candidates_vf_ee: vf_ee,
+        turning_vf_ee: turning,
         survivors_vf_ee: [count(counter::VF_SURVIVORS), count(counter::EE_SURVIVORS)],
         escalated_vf_ee: [count(counter::VF_ESCALATED), count(counter::EE_ESCALATED)],
         open_vf_ee: [count(counter::VF_OPEN), count(counter::EE_OPEN)],

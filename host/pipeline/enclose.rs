@@ -84,8 +84,8 @@ impl<R: Precision, V: Kernels> Enclosed<R, V> {
 
     fn frames(&self) -> Positions<R> {
         match self.at.1 {
-            true => Positions { still: Span::EMPTY, moving: self.moving.span() },
-            false => Positions { still: self.still.span(), moving: Span::EMPTY },
+            true => Positions { still: Span::EMPTY, moving: self.moving.span(), turns: Span::EMPTY },
+            false => Positions { still: self.still.span(), moving: Span::EMPTY, turns: Span::EMPTY },
         }
     }
 
@@ -141,7 +141,11 @@ impl<R: Precision, V: Kernels> Enclosed<R, V> {
     fn check(&self) -> Result<(), Error> {
         let frame = |k: usize| self.at.0.iter().map(|p| p[k]).collect::<Vec<_>>();
         let frames = if self.at.1 { vec![frame(0), frame(1)] } else { vec![frame(0)] };
-        self.volumes.check(&self.tree, &self.triangles, &frames)
+        self.volumes.check(
+            &self.tree,
+            &self.triangles,
+            &crate::pipeline::broad::Checked::new(frames, Vec::new()),
+        )
     }
 }
 

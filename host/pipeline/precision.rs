@@ -3,7 +3,7 @@
 use crate::mesh::Positions;
 use nearmiss_kernels::abi::{
     BelowPrecisionArgs, CullArgs, CutArgs, DiscreteArgs, FeaturesArgs, LeastArgs, MortonArgs, NearArgs,
-    PlaceArgs, RungArgs, SolveArgs, StartsArgs,
+    PlaceArgs, Point, Positions as Frames, RungArgs, SolveArgs, Span, StartsArgs,
 };
 use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::math::{Real, Vec3};
@@ -78,6 +78,10 @@ pub trait Precision: Real + Send {
     /// Returns positions in this precision, exactly: f32 is only used if all bodies are f32.
     fn points(positions: &Positions) -> impl Iterator<Item = Vec3<Self>>;
 
+    /// Returns positions and points of rigid bodies in f64; none in f32, in which no scene with a
+    /// rigid body is.
+    fn in_f64(frames: Frames<Self>, rest: Span<Point<Self>>) -> (Frames<f64>, Span<Point<f64>>);
+
     /// Returns points of this precision as positions.
     fn positions(points: Vec<Vec3<Self>>) -> Positions;
 }
@@ -122,6 +126,10 @@ impl Precision for f32 {
             Positions::F64(points) => (&[], points),
         };
         singles.iter().map(|&p| Vec3(p)).chain(doubles.iter().map(|p| Vec3(p.map(|x| x as f32))))
+    }
+
+    fn in_f64(_: Frames<f32>, _: Span<Point<f32>>) -> (Frames<f64>, Span<Point<f64>>) {
+        (Frames { still: Span::EMPTY, moving: Span::EMPTY, turns: Span::EMPTY }, Span::EMPTY)
     }
 
     fn positions(points: Vec<Vec3<f32>>) -> Positions {
@@ -169,6 +177,10 @@ impl Precision for f64 {
             Positions::F64(points) => (&[], points),
         };
         singles.iter().map(|p| Vec3(p.map(f64::from))).chain(doubles.iter().map(|&p| Vec3(p)))
+    }
+
+    fn in_f64(frames: Frames<f64>, rest: Span<Point<f64>>) -> (Frames<f64>, Span<Point<f64>>) {
+        (frames, rest)
     }
 
     fn positions(points: Vec<Vec3<f64>>) -> Positions {

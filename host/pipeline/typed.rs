@@ -19,7 +19,7 @@ mod submitted;
 pub use found::{Found, Hits, Listed};
 pub use submit::{Submits, not_prepared};
 
-use super::broad::{CandidateSearch, Share};
+use super::broad::{CandidateSearch, Checked, Share};
 use super::list::named;
 use super::placing::{Moved, Whereabouts};
 use super::precision::Precision;
@@ -286,10 +286,12 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
         if let Some(instances) = self.scene.instances.as_ref().filter(|_| own.is_of_instances) {
             let positions = instances.positions(&own.layout)?;
             let positions = positions.into_iter().map(|point| point.map(|x| R::of(x))).collect();
-            return self.broad(query).check(&own.layout, &own.layout.faces, &[positions]);
+            let positions = Checked::new(vec![positions], Vec::new());
+            return self.broad(query).check(&own.layout, &own.layout.faces, &positions);
         }
         let faces = self.scene.faces.read(self.scene.faces.len())?;
-        let positions = self.scene.vertices.positions(own.is_at_rest())?;
+        let turns = if own.is_at_rest() { Vec::new() } else { self.scene.vertices.turn_records()? };
+        let positions = Checked::new(self.scene.vertices.positions(own.is_at_rest())?, turns);
         self.broad(query).check(&own.layout, &faces, &positions)
     }
 }

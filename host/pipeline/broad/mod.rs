@@ -1,6 +1,7 @@
 //! Broad phase: from positions to candidate pairs of triangles. Each broad phase is a strategy with
 //! its own memory; after the narrow phase all give the same answer.
 
+mod checked;
 mod instances;
 mod prefix;
 mod sorted;
@@ -20,9 +21,11 @@ use nearmiss_kernels::abi::{
 };
 use nearmiss_kernels::bvh::Violation;
 use nearmiss_kernels::entry::Kernels;
-use nearmiss_kernels::math::{Vec3, round};
+use nearmiss_kernels::math::round;
 use tiles::Tiles;
 use trees::Trees;
+
+pub use checked::Checked;
 
 /// Inputs of a broad phase: the device and the spans on it.
 #[derive(Clone, Copy)]
@@ -39,6 +42,13 @@ pub struct BroadContext<'a, R: Precision> {
     pub is_submitted: bool,
     /// Meshes and poses, if a query reads bodies as instances.
     pub instances: Option<&'a Instances>,
+}
+
+impl<R: Precision> BroadContext<'_, R> {
+    /// Returns the same for fixed bodies: none turns, and their volumes are fitted once.
+    fn of_fixed(&self) -> Self {
+        BroadContext { frames: Positions { turns: Span::EMPTY, ..self.frames }, ..*self }
+    }
 }
 
 /// Candidates of instances, as the narrow phase reads them.
@@ -232,7 +242,7 @@ pub trait CandidateSearch<R: Precision>: Send {
     ///
     /// # Errors
     /// [`Error::Bug`] with the first violation; device errors.
-    fn check(&self, layout: &Layout, faces: &[[u32; 3]], frames: &[Vec<Vec3<R>>]) -> Result<(), Error>;
+    fn check(&self, layout: &Layout, faces: &[[u32; 3]], frames: &Checked<R>) -> Result<(), Error>;
 }
 
 /// Returns the broad phase of a query over the bodies of a layout. At least one body moves. Its
@@ -286,15 +296,6 @@ impl<R: Precision> WithVolume for New<'_, R> {
 pub fn growth(distance: f64) -> f32 {
     let half = round::up(0.5 * distance);
     if 2.0 * f64::from(half) < distance { half.next_up() } else { half }
-}
-
-/// Returns the volume around a triangle at t = 0 and, if there are two frames, at t = 1.
-fn leaf_volume<R: Precision, V: Kernels>(face: [u32; 3], frames: &[Vec<Vec3<R>>]) -> V {
-    let corners = |frame: &Vec<Vec3<R>>| face.map(|v| frame[v as usize]);
-    match frames {
-        [t0, t1] => V::moving(corners(t0), corners(t1)),
-        _ => V::still(corners(&frames[0])),
-    }
 }
 
 /// Returns a checker's violation as an error.

@@ -4,6 +4,7 @@
 use super::features::Features;
 use super::rungs::Rungs;
 use super::start::StartCheck;
+use super::turning::Turning;
 use super::{AnswerLists, Narrow, NarrowContext, growable};
 use crate::contacts::Entries;
 use crate::device::{Ahead, Buffer, Device};
@@ -68,6 +69,8 @@ pub struct ContinuousNarrow {
     pub ee_hits: List<Hit>,
     /// Rungs of a certified solver.
     rungs: Rungs,
+    /// Pairs of bodies that turn: tested by a certified solver.
+    turning: Turning,
     /// Counters: pairs that isolation leaves; hits that are not certain, those whose iterations ran
     /// out, those with both, and those too large for the tolerance.
     counters: [Counter; 6],
@@ -127,6 +130,7 @@ impl ContinuousNarrow {
             vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, capacities.hits[0])?,
             ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, capacities.hits[1])?,
             rungs: Rungs::new(device, solver.certified(), &capacities)?,
+            turning: Turning::new(device)?,
             counters: [
                 counter::VF_OPEN,
                 counter::EE_OPEN,
@@ -232,11 +236,12 @@ impl ContinuousNarrow {
         let [vf, ee] = self.tested(given.features);
         let edges = given.features.edges.span();
         let precision = match self.solver {
-            ContinuousSolver::Certified(_) => {
+            ContinuousSolver::Certified(certified) => {
                 let hits = [&self.vf_hits, &self.ee_hits];
                 self.rungs.climb(given, (edges, given.is_sample), ([vf, ee], hits, earliest))?;
                 let listed = (edges, &self.vf_hits, &self.ee_hits);
                 let tolerances = self.rungs.tolerances();
+                self.turning.solve(given, (&certified, tolerances), (hits, earliest))?;
                 return below_precision::count(self.below_precision, tolerances, listed, given);
             }
             ContinuousSolver::Cubic(precision) => precision,
@@ -286,10 +291,14 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
                 let gap = self.solver.certified().filter(|certified| certified.is_apart());
                 let known = self.known(given.is_sample);
                 let numbers = (gap.map_or(0.0, Certified::listed_within), known);
+                let pairs = match self.solver.certified() {
+                    Some(certified) => self.turning.divide(given, certified)?,
+                    None => given.pairs,
+                };
                 if known.is_empty() {
-                    given.features.run::<R, R::Features>(given, numbers)
+                    given.features.run::<R, R::Features>(given, pairs, numbers)
                 } else {
-                    given.features.run::<R, R::FeaturesBefore>(given, numbers)
+                    given.features.run::<R, R::FeaturesBefore>(given, pairs, numbers)
                 }
             }
             Step::Cull => self.cull(given),
@@ -324,7 +333,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
     fn lists<'a>(&'a mut self, step: usize, features: &'a mut Features) -> Vec<&'a mut dyn GrowableOutput> {
         match self.all_steps()[step] {
             Step::Start => self.start.as_mut().map_or(Vec::new(), StartCheck::lists),
-            Step::Features => growable(&mut features.candidates).collect(),
+            Step::Features => growable(&mut features.candidates).chain(self.turning.lists()).collect(),
             Step::Cull => growable(self.survivors.iter_mut().flatten()).collect(),
             Step::Solve => growable([&mut self.vf_hits, &mut self.ee_hits])
                 .chain(growable(&mut self.counters))
@@ -340,6 +349,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
         }
         let mut lists: Vec<_> = self.start.iter().flat_map(StartCheck::uncertain).collect();
         lists.extend(features.between());
+        lists.extend(self.turning.between());
         if let Some([vf, ee]) = &self.survivors {
             lists.extend([named("narrow: vf that may meet", vf), named("narrow: ee that may meet", ee)]);
         }

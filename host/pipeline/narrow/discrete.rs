@@ -111,7 +111,7 @@ impl DiscreteNarrow {
         let Placeable { tables, relations, tile_pairs } = *placeable;
         let args = |pairs: Output<Pair>, uncertain: Output<Pair>| PlacedArgs {
             lists: DiscreteArgs {
-                frames: Positions { still: Span::EMPTY, moving: Span::EMPTY },
+                frames: Positions { still: Span::EMPTY, moving: Span::EMPTY, turns: Span::EMPTY },
                 faces: Span::EMPTY,
                 pairs,
                 contacts: self.contacts.output(given.counters),

@@ -8,7 +8,7 @@ use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{List, Named, named};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::{launch, purpose};
-use nearmiss_kernels::abi::{Facet, FeaturesArgs, Pair, Span, counter};
+use nearmiss_kernels::abi::{Facet, FeaturesArgs, Output, Pair, Span, counter};
 use nearmiss_kernels::entry::Entry;
 
 /// Topology of triangles, and the candidates of a query of features.
@@ -79,7 +79,12 @@ impl Features {
         vec![named("narrow: vf", vf), named("narrow: ee", ee)]
     }
 
-    /// Launches the step by kernel `E`, for moving triangles or for those at one time. It lists
+    /// Returns the topology of the triangles.
+    pub fn facets(&self) -> Span<Facet> {
+        self.facets.span()
+    }
+
+    /// Launches the step over these triangle pairs by kernel `E`, for moving triangles or for those at one time. It lists
     /// pairs within the gap. If a time is `known`, it lists only those within the gap before it.
     ///
     /// # Errors
@@ -87,18 +92,19 @@ impl Features {
     pub fn run<R: Precision, E: Entry<Args = FeaturesArgs<R>>>(
         &self,
         given: &NarrowContext<R>,
+        pairs: Output<Pair>,
         (gap, known): (f64, Span<u64>),
     ) -> Result<(), Error> {
         let [vf, ee] = &self.candidates;
         let args = FeaturesArgs {
             frames: given.frames,
             facets: self.facets.span(),
-            pairs: given.pairs,
+            pairs,
             vf: vf.output(given.counters),
             ee: ee.output(given.counters),
             gap,
             known,
         };
-        launch::at_once::<E>(given.device, given.pairs.room() as usize, &args)
+        launch::at_once::<E>(given.device, pairs.room() as usize, &args)
     }
 }

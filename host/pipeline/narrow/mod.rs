@@ -9,6 +9,7 @@ mod features;
 mod near;
 mod rungs;
 mod start;
+mod turning;
 
 pub use answer::AnswerLists;
 pub use continuous::{Capacities, ContinuousNarrow};
@@ -28,7 +29,7 @@ use crate::query::Query;
 use crate::scene::Body;
 use distance::DistanceNarrow;
 use near::NearNarrow;
-use nearmiss_kernels::abi::{BodyRecord, BodyTolerance, Counters, Output, Pair, Positions, Span};
+use nearmiss_kernels::abi::{BodyRecord, BodyTolerance, Counters, Output, Pair, Point, Positions, Span};
 
 /// Inputs of every step of the stage.
 pub struct NarrowContext<'a, R: Precision> {
@@ -36,6 +37,8 @@ pub struct NarrowContext<'a, R: Precision> {
     pub device: &'a Device,
     /// Positions.
     pub frames: Positions<R>,
+    /// Vertices of rigid bodies, as they are without a pose.
+    pub rest: Span<Point<R>>,
     /// Vertex indices of every triangle.
     pub faces: Span<[u32; 3]>,
     /// Candidate triangle pairs.

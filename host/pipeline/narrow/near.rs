@@ -85,7 +85,9 @@ impl<R: Precision> Narrow<R> for NearNarrow {
 
     fn run(&mut self, step: usize, given: &NarrowContext<R>) -> Result<(), Error> {
         match Step::ALL[step] {
-            Step::Features => given.features.run::<R, R::FeaturesAtRest>(given, (self.distance, Span::EMPTY)),
+            Step::Features => {
+                given.features.run::<R, R::FeaturesAtRest>(given, given.pairs, (self.distance, Span::EMPTY))
+            }
             Step::Near => self.measure(given),
         }
     }

@@ -1,6 +1,6 @@
 //! Bodies whose vertices or poses are in memory of the caller.
 
-use super::{Last, Placing, write};
+use super::{Last, Placing, turns, write};
 use crate::device::{Ahead, Buffer, Device};
 use crate::error::Error;
 use crate::mesh;
@@ -91,12 +91,13 @@ impl<R: Precision> Placing<R> {
     /// # Errors
     /// Device errors.
     pub fn again(&mut self, device: &Device) -> Result<(), Error> {
-        let Last::Device(args) = &self.last else { return Ok(()) };
+        let Last::Device(args, turns) = &self.last else { return Ok(()) };
         self.is_at_rest_current = false;
         if self.arrays.any {
             self.arrays.seen.clear()?;
         }
-        launch::striding::<R::Place>(&device.undisturbed(), args.count as usize, args)
+        launch::striding::<R::Place>(&device.undisturbed(), args.count as usize, args)?;
+        turns::launch(device, turns)
     }
 
     /// Returns whether the last frame placed nothing, or only from device memory.

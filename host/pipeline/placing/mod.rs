@@ -1,6 +1,7 @@
 //! Place: the vertices of all bodies on the device, at the positions of each frame.
 
 mod device_arrays;
+mod turns;
 
 pub use device_arrays::{Seen, Whereabouts};
 
@@ -15,9 +16,10 @@ use bytemuck::Pod;
 use device_arrays::DeviceArrays;
 use nearmiss_kernels::abi::{
     KEEPS_END, LENT, LENT_POSES, POSED, PlaceArgs, Placement, Point, PoseRecord, Positions, RESTING, Span,
-    StartsArgs, UPLOADED, VertexMotion as Ends,
+    StartsArgs, TurnRecord, TurnsArgs, UPLOADED, VertexMotion as Ends,
 };
 use nearmiss_kernels::math::{Real, Vec3};
+use turns::Turns;
 
 /// A body that a frame moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,8 +51,12 @@ impl<R: Precision> Vertices<R> {
 
     fn span(&self) -> Positions<R> {
         match self {
-            Vertices::Still(points) => Positions { still: points.span(), moving: Span::EMPTY },
-            Vertices::Moving(motions) => Positions { still: Span::EMPTY, moving: motions.span() },
+            Vertices::Still(points) => {
+                Positions { still: points.span(), moving: Span::EMPTY, turns: Span::EMPTY }
+            }
+            Vertices::Moving(motions) => {
+                Positions { still: Span::EMPTY, moving: motions.span(), turns: Span::EMPTY }
+            }
         }
     }
 
@@ -90,7 +96,7 @@ enum Last<R: Real> {
     /// None.
     Nothing,
     /// Device memory: it can be placed again.
-    Device(PlaceArgs<R>),
+    Device(PlaceArgs<R>, TurnsArgs),
     /// Host memory.
     Host,
 }
@@ -119,6 +125,10 @@ pub struct Placing<R: Precision> {
     placed: Vec<Placement>,
     /// Data of bodies in memory of the caller; empty if there are none.
     arrays: DeviceArrays,
+    /// The largest coordinate of fixed bodies.
+    fixed: f64,
+    /// Bodies that may turn in the last frame's step.
+    turns: Turns,
     last: Last<R>,
 }
 
@@ -154,6 +164,8 @@ impl<R: Precision> Placing<R> {
             poses: device.buffer(0)?,
             placed: Vec::new(),
             arrays: DeviceArrays::new(&device.of(purpose::DEVICE_ARRAYS))?,
+            fixed: largest(bodies.iter().filter(|body| body.kind() == BodyKind::Fixed)),
+            turns: Turns::new(device)?,
             last: Last::Host,
         };
         placing.vertices.write(bodies.iter())?;
@@ -169,9 +181,31 @@ impl<R: Precision> Placing<R> {
     /// [ready](Placing::ready).
     pub fn frames(&self, at_rest: bool) -> Positions<R> {
         match &self.vertices {
-            Vertices::Moving(_) if at_rest => Positions { still: self.at_rest.span(), moving: Span::EMPTY },
-            Vertices::Still(_) | Vertices::Moving(_) => self.vertices.span(),
+            Vertices::Moving(_) if at_rest => {
+                Positions { still: self.at_rest.span(), moving: Span::EMPTY, turns: Span::EMPTY }
+            }
+            Vertices::Still(_) | Vertices::Moving(_) => {
+                Positions { turns: self.turns.span(), ..self.vertices.span() }
+            }
         }
+    }
+
+    /// Returns the vertices of rigid bodies, as they are without a pose.
+    pub fn rest(&self) -> Span<Point<R>> {
+        self.rest.span()
+    }
+
+    /// Downloads the bodies that may turn.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn turn_records(&self) -> Result<Vec<TurnRecord>, Error> {
+        self.turns.read()
+    }
+
+    /// Returns whether a body may turn in the step.
+    pub fn turns(&self) -> bool {
+        !self.turns.is_empty()
     }
 
     /// Returns whether positions are ready for a query at one time, or in motion.
@@ -243,6 +277,7 @@ impl<R: Precision> Placing<R> {
 
     fn put_together(&mut self, device: &Device, bodies: &[Body], moved: &[Moved]) -> Result<(), Error> {
         let all = moved.len() == bodies.len();
+        self.turns.hold(device, Vec::new())?;
         (self.last, self.arrays.any) = (Last::Nothing, false);
         let comes = |m: &Moved| {
             !m.rests && bodies[m.body].kind() != BodyKind::Rigid && bodies[m.body].device_motion().is_none()
@@ -256,6 +291,7 @@ impl<R: Precision> Placing<R> {
         let ends = if moving { 2 } else { 1 };
         let (mut placed, mut poses, mut uploads, mut arrays) =
             (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut turning = Vec::new();
         let (mut before, mut uploaded) = (0, 0);
         for &Moved { body: i, rests } in moved {
             let (body, vertex) = (&bodies[i], self.starts[i]);
@@ -273,12 +309,20 @@ impl<R: Precision> Placing<R> {
                     arrays.extend(input.records(if keeps { 2 } else { ends }));
                     let from = if kind == BodyKind::Rigid { LENT_POSES } else { LENT };
                     let from = if keeps { from | KEEPS_END } else { from };
-                    Placement { from, lent: first, pose: 2 * i as u32, ..placement }
+                    let placement = Placement { from, lent: first, pose: 2 * i as u32, ..placement };
+                    if moving && kind == BodyKind::Rigid && input.is_moving() {
+                        turning.extend(turns::source(body, &placement, self.fixed));
+                    }
+                    placement
                 }
                 (false, None, BodyKind::Rigid) => {
                     let pose = poses.len() as u32;
                     poses.extend(body.poses().iter().take(ends).map(Pose::record));
-                    Placement { from: POSED, pose, ..placement }
+                    let placement = Placement { from: POSED, pose, ..placement };
+                    if moving {
+                        turning.extend(turns::source(body, &placement, self.fixed));
+                    }
+                    placement
                 }
                 (false, None, BodyKind::Deformable | BodyKind::Fixed) => {
                     uploads.push(i);
@@ -320,9 +364,19 @@ impl<R: Precision> Placing<R> {
             count: before,
             pad: 0,
         };
-        self.last = if uploaded == 0 && poses.is_empty() { Last::Device(args) } else { Last::Host };
-        launch::striding::<R::Place>(&device.undisturbed(), before as usize, &args)
+        self.turns.hold(device, turning)?;
+        let of_turns = self.turns.args(args.poses, args.found);
+        let is_repeatable = uploaded == 0 && poses.is_empty();
+        self.last = if is_repeatable { Last::Device(args, of_turns) } else { Last::Host };
+        launch::striding::<R::Place>(&device.undisturbed(), before as usize, &args)?;
+        turns::launch(device, &of_turns)
     }
+}
+
+/// Returns the largest coordinate of vertices of bodies.
+fn largest<'a>(bodies: impl Iterator<Item = &'a Body>) -> f64 {
+    let points = bodies.flat_map(|body| f64::points(body.positions_t0()));
+    points.flat_map(|point| point.0).filter(|x| x.is_finite()).fold(0.0, |most, x| most.max(x.abs()))
 }
 
 /// Sets the first elements of a buffer, which grows if it must.

@@ -150,10 +150,18 @@ impl<R: Precision> QueryMemory<R> {
         } else {
             scene.ready(self.is_at_rest())?;
         }
+        let margin = self.margin(scene.vertices.turns());
         let broad = &mut scene.broads[self.broad];
-        let grows = broad.phase.set_margin(growth(self.query.listed_within()));
+        let grows = broad.phase.set_margin(margin);
         broad.is_built &= !grows;
         Ok(!broad.is_built)
+    }
+
+    /// Returns the margin of the volumes. A pair that turns may stay undecided within half a
+    /// tolerance, and is then a candidate of every volume.
+    pub fn margin(&self, turns: bool) -> f32 {
+        let tolerance = self.query.certified().and_then(|certified| certified.tolerance);
+        growth(self.query.listed_within() + tolerance.filter(|_| turns).unwrap_or(0.0))
     }
 
     /// Returns the indices of the narrow phase's steps.
@@ -212,6 +220,7 @@ impl<R: Precision> QueryMemory<R> {
                     let given = NarrowContext {
                         device: &scene.device,
                         frames: scene.vertices.frames(self.query.kind().is_at_rest()),
+                        rest: scene.vertices.rest(),
                         faces: scene.faces.span(),
                         pairs: scene.pairs.output(self.counters.counters()),
                         bodies: self.records.span(),

@@ -7,7 +7,6 @@ use super::scene::SceneMemory;
 use crate::contacts::{DeviceAnswer, DeviceList};
 use crate::device::{Buffer, Replay};
 use crate::error::Error;
-use crate::pipeline::broad::growth;
 use crate::pipeline::counts::Counts;
 use crate::pipeline::list::GrowableOutput;
 use crate::pipeline::precision::Precision;
@@ -248,7 +247,7 @@ impl<R: Precision> QueryMemory<R> {
         submitted: &Submitted,
         seen: Span<u64>,
     ) -> Result<(), Error> {
-        scene.broads[self.broad].phase.set_margin(growth(self.query.listed_within()));
+        scene.broads[self.broad].phase.set_margin(self.margin(scene.vertices.turns()));
         scene.device.beside(|| self.counters.clear())?;
         [Stage::Fit, Stage::Refit].into_iter().try_for_each(|stage| self.run(scene, stage))?;
         scene.device.join();

@@ -9,6 +9,7 @@ use super::tiles::walk;
 use super::{BroadContext, CandidateSearch, Candidates, Placeable, broken};
 use crate::device::Device;
 use crate::error::Error;
+use crate::pipeline::broad::Checked;
 use crate::pipeline::counts::Counts;
 use crate::pipeline::instances::Instances;
 use crate::pipeline::launch;
@@ -233,7 +234,7 @@ impl<R: Precision> CandidateSearch<R> for BodyGroups {
 
     /// Checks that each body has one place, and that its box and those above hold its placed
     /// vertices. Checks of meshes are tests of `pipeline::instances`.
-    fn check(&self, layout: &Layout, faces: &[[u32; 3]], frames: &[Vec<Vec3<R>>]) -> Result<(), Error> {
+    fn check(&self, layout: &Layout, faces: &[[u32; 3]], frames: &Checked<R>) -> Result<(), Error> {
         let mut seen = vec![false; layout.bodies()];
         for (leaf, body, volumes) in self.groups.volumes()? {
             let is_known = seen.get_mut(body).is_some_and(|seen| !std::mem::replace(seen, true));
@@ -277,7 +278,7 @@ mod tests {
         let instances = Instances::new(&device, &bodies, &layout)?;
         let given = BroadContext::<f64> {
             device: &device,
-            frames: Positions { still: Span::EMPTY, moving: Span::EMPTY },
+            frames: Positions { still: Span::EMPTY, moving: Span::EMPTY, turns: Span::EMPTY },
             faces: Span::EMPTY,
             records: Span::EMPTY,
             is_submitted: false,
@@ -288,7 +289,8 @@ mod tests {
         CandidateSearch::<f64>::fit(&mut groups, &given)?;
         CandidateSearch::<f64>::refit(&mut groups, &given)?;
         fault(&mut groups);
-        CandidateSearch::<f64>::check(&groups, &layout, &layout.faces, &[instances.positions(&layout)?])
+        let positions = Checked::new(vec![instances.positions(&layout)?], Vec::new());
+        CandidateSearch::<f64>::check(&groups, &layout, &layout.faces, &positions)
     }
 
     #[test]

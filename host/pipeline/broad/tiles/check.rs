@@ -3,13 +3,12 @@
 use super::{FIXED, MOVING, Tiles};
 use crate::error::Error;
 use crate::pipeline::broad::sorted::place;
-use crate::pipeline::broad::{broken, leaf_volume};
+use crate::pipeline::broad::{Checked, broken};
 use crate::pipeline::layout::Layout;
 use crate::pipeline::precision::Precision;
 use nearmiss_kernels::abi::NodeFilter;
 use nearmiss_kernels::bvh::tiles;
 use nearmiss_kernels::entry::Kernels;
-use nearmiss_kernels::math::Vec3;
 
 impl<V: Kernels> Tiles<V> {
     /// Checks tiles, and their rims if there are any.
@@ -20,7 +19,7 @@ impl<V: Kernels> Tiles<V> {
         &self,
         layout: &Layout,
         faces: &[[u32; 3]],
-        frames: &[Vec<Vec3<R>>],
+        frames: &Checked<R>,
     ) -> Result<(), Error> {
         let filters = self.filters.read(self.filters.len())?;
         let whose: Vec<NodeFilter> = layout.whose().collect();
@@ -38,9 +37,11 @@ impl<V: Kernels> Tiles<V> {
             of(MOVING).or_else(|| of(FIXED))
         };
         let is_static = |triangle: u32| place(triangle).is_some_and(|(part, _)| part == FIXED);
-        let margin = |triangle| if is_static(triangle) { self.fixed_margin.fitted() } else { self.margin };
-        let leaf =
-            |triangle: u32| leaf_volume::<R, V>(faces[triangle as usize], frames).near(margin(triangle));
+        let margin = |triangle| {
+            let face = faces[triangle as usize];
+            if is_static(triangle) { self.fixed_margin.fitted() } else { self.margin + frames.swell(face) }
+        };
+        let leaf = |triangle: u32| frames.leaf::<V>(faces[triangle as usize], margin(triangle));
         let mut seen = self.triangles.map(|count| vec![false; count as usize]);
         let [moving, fixed] = &mut seen;
         tiles::check(&tiles, place, leaf, |triangle| whose[triangle as usize], [moving, fixed])

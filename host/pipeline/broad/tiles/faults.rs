@@ -3,11 +3,13 @@
 use super::*;
 use crate::device::emulator::{Emulator, Mode};
 use crate::mesh::{Mesh, Positions};
+use crate::pipeline::broad::Checked;
 use crate::query::QueryKind;
 use crate::samples::soup;
 use crate::scene::{Body, CollisionFilter};
 use nearmiss_kernels::abi::{self, LEAF, Point};
 use nearmiss_kernels::bv::{Aabb, Volume};
+use nearmiss_kernels::math::Vec3;
 
 /// A change to sound tiles.
 type Fault = fn(&mut Tiles<Aabb>);
@@ -42,7 +44,7 @@ fn checked_of(bodies: &[Body], fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), E
     let (faces, records) = (device.upload(&layout.faces)?, device.upload(&layout.records)?);
     let given = BroadContext {
         device: &device,
-        frames: abi::Positions { still: points.span(), moving: Span::EMPTY },
+        frames: abi::Positions { still: points.span(), moving: Span::EMPTY, turns: Span::EMPTY },
         faces: faces.span(),
         records: records.span(),
         is_submitted: false,
@@ -53,7 +55,7 @@ fn checked_of(bodies: &[Body], fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), E
     CandidateSearch::fit(&mut tiles, &given)?;
     CandidateSearch::refit(&mut tiles, &given)?;
     fault(&mut tiles);
-    CandidateSearch::<f32>::check(&tiles, &layout, &layout.faces, &[at])
+    CandidateSearch::<f32>::check(&tiles, &layout, &layout.faces, &Checked::new(vec![at], Vec::new()))
 }
 
 /// Changes one element.

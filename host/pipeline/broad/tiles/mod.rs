@@ -11,6 +11,7 @@ use super::sorted::{Sorted, SortedFor};
 use super::{BroadContext, CandidateSearch, Candidates, Which};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
+use crate::pipeline::broad::Checked;
 use crate::pipeline::counts::Counts;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{GrowableOutput, List};
@@ -23,7 +24,6 @@ use nearmiss_kernels::abi::{
 };
 use nearmiss_kernels::bvh::tiles::{self, Levels, Part, TILE};
 use nearmiss_kernels::entry::{self, Entry, Kernels};
-use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::stage::traverse::tile_triangles::turns;
 use std::collections::BTreeSet;
 use xxhash_rust::xxh3::xxh3_64;
@@ -177,6 +177,7 @@ impl<V: Kernels> Tiles<V> {
         else {
             return Ok(());
         };
+        let given = &given.of_fixed();
         Tiles::fit(self, given, FIXED, triangles, self.fixed_margin.fitted())?;
         Tiles::refit(self, given.device, FIXED)
     }
@@ -386,7 +387,7 @@ impl<R: Precision, V: Kernels> CandidateSearch<R> for Tiles<V> {
         ])
     }
 
-    fn check(&self, layout: &Layout, faces: &[[u32; 3]], frames: &[Vec<Vec3<R>>]) -> Result<(), Error> {
+    fn check(&self, layout: &Layout, faces: &[[u32; 3]], frames: &Checked<R>) -> Result<(), Error> {
         self.check_tiles(layout, faces, frames)
     }
 }

@@ -2,13 +2,12 @@
 
 use super::{MOVING, Tiles};
 use crate::error::Error;
-use crate::pipeline::broad::{BroadContext, broken};
+use crate::pipeline::broad::{BroadContext, Checked, broken};
 use crate::pipeline::launch;
 use crate::pipeline::precision::Precision;
 use nearmiss_kernels::abi::RimsArgs;
 use nearmiss_kernels::bvh::{rims, tiles};
 use nearmiss_kernels::entry::{self, Kernels};
-use nearmiss_kernels::math::Vec3;
 
 impl<V: Kernels> Tiles<V> {
     /// Fits the rims of the moving nodes.
@@ -47,7 +46,7 @@ impl<V: Kernels> Tiles<V> {
         &self,
         tiles: &tiles::Tiles<V>,
         faces: &[[u32; 3]],
-        frames: &[Vec<Vec3<R>>],
+        frames: &Checked<R>,
     ) -> Result<(), Error> {
         if self.rims.is_empty() {
             return Ok(());

@@ -9,7 +9,7 @@ use super::volumes::Volumes;
 use crate::device::Device;
 use crate::error::Error;
 use crate::pipeline::broad::sorted::place;
-use crate::pipeline::broad::{BroadContext, broken};
+use crate::pipeline::broad::{BroadContext, Checked, broken};
 use crate::pipeline::layout::Layout;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::{launch, purpose};
@@ -19,7 +19,6 @@ use nearmiss_kernels::abi::{
 };
 use nearmiss_kernels::bvh;
 use nearmiss_kernels::entry::{self, Kernels};
-use nearmiss_kernels::math::Vec3;
 
 /// The trees of a scene.
 pub struct Forest<V> {
@@ -80,6 +79,7 @@ impl<V: Kernels> Forest<V> {
                 tree.construct::<R>(device, frames, (faces, records))?;
                 tree.learn_levels()?;
                 let volumes = Volumes::<V>::new(device, &tree, fixed.margin)?;
+                let frames = given.of_fixed().frames;
                 volumes.fit(device, &tree, frames, faces)?;
                 volumes.refit(device, &tree, frames, faces)?;
                 let args = GraftArgs {
@@ -135,7 +135,7 @@ impl<V: Kernels> Forest<V> {
         &self,
         layout: &Layout,
         faces: &[[u32; 3]],
-        frames: &[Vec<Vec3<R>>],
+        frames: &Checked<R>,
     ) -> Result<(), Error> {
         self.tree.check()?;
         let filters = self.tree.filters.read(self.tree.filters.len())?;

@@ -12,6 +12,7 @@ pub use volumes::Volumes;
 use super::{BroadContext, CandidateSearch, Candidates};
 use crate::device::Device;
 use crate::error::Error;
+use crate::pipeline::broad::Checked;
 use crate::pipeline::counts::Counts;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::list::GrowableOutput;
@@ -21,7 +22,6 @@ use crate::query::Query;
 use forest::Forest;
 use nearmiss_kernels::abi::Output;
 use nearmiss_kernels::entry::Kernels;
-use nearmiss_kernels::math::Vec3;
 use walk::{Walk, WalkContext, walk};
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -117,7 +117,7 @@ impl<R: Precision, V: Kernels> CandidateSearch<R> for Trees<R, V> {
         ])
     }
 
-    fn check(&self, layout: &Layout, faces: &[[u32; 3]], frames: &[Vec<Vec3<R>>]) -> Result<(), Error> {
+    fn check(&self, layout: &Layout, faces: &[[u32; 3]], frames: &Checked<R>) -> Result<(), Error> {
         self.forest.check(layout, faces, frames)
     }
 }

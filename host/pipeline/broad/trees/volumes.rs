@@ -4,13 +4,12 @@ use super::tree::Tree;
 use super::treelets::{Plan, RefitPlan};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
-use crate::pipeline::broad::{broken, leaf_volume};
+use crate::pipeline::broad::{Checked, broken};
 use crate::pipeline::launch;
 use crate::pipeline::precision::Precision;
 use nearmiss_kernels::abi::{FitArgs, GroupsArgs, Link, Node, Positions, RefitArgs, Span, TreeletsArgs};
 use nearmiss_kernels::bvh;
 use nearmiss_kernels::entry::{self, Entry, Kernels};
-use nearmiss_kernels::math::Vec3;
 
 /// The volumes of a tree, kept on the device.
 pub struct Volumes<V> {
@@ -169,7 +168,7 @@ impl<V: Kernels> Volumes<V> {
         &self,
         tree: &Tree,
         faces: &[[u32; 3]],
-        frames: &[Vec<Vec3<R>>],
+        frames: &Checked<R>,
     ) -> Result<(), Error> {
         let leaves = tree.leaf_nodes.read(tree.leaves())?;
         let nodes = &self.download()?[..tree.root() as usize - 1 + 2 * tree.leaves()];
@@ -186,19 +185,21 @@ impl<V: Kernels> Volumes<V> {
         (links, nodes, leaves): (&[Link], &[Node<V>], &[u32]),
         (root, margin): (u32, f32),
         faces: &[[u32; 3]],
-        frames: &[Vec<Vec3<R>>],
+        frames: &Checked<R>,
     ) -> Result<(), Error> {
-        let leaf = |triangle: u32| leaf_volume::<R, V>(faces[triangle as usize], frames).near(margin);
+        let swell = |triangle: u32| frames.swell(faces[triangle as usize]);
+        let leaf = |triangle: u32| frames.leaf::<V>(faces[triangle as usize], margin + swell(triangle));
         let fitted = |first: u32, last: u32| {
             if last - first >= V::GROUP {
                 return None;
             }
             let triangles =
                 leaves[first as usize..=last as usize].iter().map(|&at| links[at as usize].triangle());
+            let most = triangles.clone().map(swell).fold(0.0, f32::max);
             let vertices = triangles.flat_map(|t| faces[t as usize]);
             let points = vertices.flat_map(|v| frames.iter().map(move |frame| frame[v as usize]));
             let volume = V::of_points(&*points.collect::<Vec<_>>());
-            Some(volume.near(margin))
+            Some(volume.near(margin + most))
         };
         bvh::check_volumes(links, nodes, root, leaf, fitted).map_err(broken)
     }
