@@ -43,8 +43,26 @@ pub struct ContactGeometry {
 /// direction if the sine of their angle exceeds it.
 const DIRECTION: f64 = 1e-8;
 
-/// Four vertices of a contact at both ends of the step.
-pub type Corners = [[[f64; 3]; 2]; 4];
+/// Four vertices of a contact at three times.
+#[derive(Clone, Copy, Debug)]
+pub struct Corners {
+    /// At the time of contact.
+    pub now: [[f64; 3]; 4],
+    /// At the start of the step. If a body turns: shortly before the contact.
+    pub before: [[f64; 3]; 4],
+    /// At the end of the step. If a body turns: shortly after the contact.
+    pub after: [[f64; 3]; 4],
+    /// Whether a body turns.
+    pub turns: bool,
+}
+
+impl Corners {
+    /// Returns the vertices on straight lines between both ends of the step.
+    pub fn straight(ends: &[[[f64; 3]; 2]; 4], time: f64) -> Corners {
+        let at = |t: f64| ends.map(|[t0, t1]| (Vec3(t0) * (1.0 - t) + Vec3(t1) * t).0);
+        Corners { now: at(time), before: at(0.0), after: at(1.0), turns: false }
+    }
+}
 
 /// Two features, named as in a contact or a near pair.
 #[derive(Clone, Copy, Debug)]
@@ -73,8 +91,7 @@ impl From<&NearPair> for Named {
 impl ContactGeometry {
     /// Computes the geometry of two features; `corners` are in the order of `vertices`.
     pub fn of(named: &Named, vertices: [u32; 4], corners: &Corners) -> ContactGeometry {
-        let at = |t: f64| corners.map(|[t0, t1]| Vec3(t0) * (1.0 - t) + Vec3(t1) * t);
-        let (now, start, end) = (at(named.time), at(0.0), at(1.0));
+        let [now, start, end] = [corners.now, corners.before, corners.after].map(|at| at.map(Vec3));
         let (first, weights) = (named.kind.vertices_of_a(), weights(named.kind, now));
         let point = |corners: &[Vec3<f64>; 4], range: std::ops::Range<usize>| -> Vec3<f64> {
             range.map(|i| corners[i] * weights[i]).fold(NONE, |sum, part| sum + part)
@@ -87,7 +104,8 @@ impl ContactGeometry {
             Kind::Ee => sides(0, 1).cross(sides(2, 3)),
         };
         let extent = now.iter().map(|p| length(*p - now[0])).fold(0.0, f64::max);
-        let came = gap(&start);
+        // Where a body turns, a gap at the start tells nothing of the approach: its motion does.
+        let came = if corners.turns { gap(&start) - gap(&end) } else { gap(&start) };
         let normal = if length(apart) > DIRECTION * extent {
             apart
         } else {
@@ -161,9 +179,9 @@ fn weights(kind: Kind, at: [Vec3<f64>; 4]) -> [f64; 4] {
 mod tests {
     use super::*;
 
-    fn geometry(kind: Kind, time: f64, corners: Corners) -> ContactGeometry {
+    fn geometry(kind: Kind, time: f64, ends: [[[f64; 3]; 2]; 4]) -> ContactGeometry {
         let named = Named { kind, bodies: [BodyId(0); 2], features: [0, 0], time };
-        ContactGeometry::of(&named, [0, 1, 2, 3], &corners)
+        ContactGeometry::of(&named, [0, 1, 2, 3], &Corners::straight(&ends, time))
     }
 
     fn still(p: [f64; 3]) -> [[f64; 3]; 2] {

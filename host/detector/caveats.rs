@@ -10,8 +10,9 @@ use crate::query::{Certified, Query};
 use crate::scene::{Body, BodyKind};
 
 impl Detector {
-    /// Adds a caveat for each rigid body that turns far in the step: [`Caveat::Turned`]. Poses that
-    /// only the device has are copied from it.
+    /// Adds a caveat for each rigid body that turns far in the step while its vertices go straight:
+    /// [`Caveat::Turned`]. They do so on a straight path, and for a solver without a proof. Poses
+    /// that only the device has are copied from it.
     ///
     /// # Errors
     /// Those of the device.
@@ -19,7 +20,10 @@ impl Detector {
         if query.kind().is_at_rest() {
             return Ok(());
         }
-        let is_rigid = |body: &&Body| body.kind() == BodyKind::Rigid && body.face_count() > 0;
+        let is_certified = query.certified().is_some();
+        let goes_straight = |body: &Body| !is_certified || body.is_straight();
+        let is_rigid =
+            |body: &&Body| body.kind() == BodyKind::Rigid && body.face_count() > 0 && goes_straight(body);
         let is_device_resident = |body: &Body| body.is_device_resident() && body.is_moving();
         let bodies = self.scene.bodies();
         let found = match &self.engine.pipeline {

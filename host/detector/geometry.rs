@@ -5,9 +5,9 @@ use crate::contacts::geometry::{Corners, Named};
 use crate::contacts::{Answer, ContactGeometry, Kind, Located};
 use crate::error::Error;
 use crate::memory;
-use crate::pipeline::Layout;
+use crate::pipeline::{Layout, Whereabouts};
 use crate::query::Query;
-use crate::scene::Body;
+use crate::scene::{Body, BodyKind, PoseStep};
 use rayon::prelude::*;
 
 impl Detector {
@@ -55,19 +55,70 @@ impl Detector {
                 |end: usize| ends.get(end.min(ends.len() - 1)).and_then(|end| end.get_f64(vertex as usize));
             Some([at(0)?, at(1)?])
         };
+        let bodies = self.scene.bodies();
+        let steps = if query.certified().is_some() { turning(bodies, &places) } else { Vec::new() };
         let one = |named: &Named| {
             let (starts, vertices) = corners(&layout, named)?;
-            let mut corners: Corners = [[[0.0; 3]; 2]; 4];
-            for (corner, vertex) in corners.iter_mut().zip(vertices) {
+            let mut ends = [[[0.0; 3]; 2]; 4];
+            for (corner, vertex) in ends.iter_mut().zip(vertices) {
                 *corner = at(vertex)?;
             }
             let mut own = vertices;
             own.iter_mut().zip(starts).for_each(|(vertex, start)| *vertex -= start);
+            let steps = named.bodies.map(|body| steps.get(body.index()).copied().flatten());
+            let corners = around(named, own, bodies, (&ends, steps))?;
             Some(ContactGeometry::of(named, own, &corners))
         };
         named.par_iter().map(|named| one(named).ok_or_else(of_others)).collect()
     }
 }
+
+/// Returns the step of each body that turns.
+fn turning(bodies: &[Body], places: &Whereabouts) -> Vec<Option<PoseStep>> {
+    let step = |(at, body): (usize, &Body)| {
+        if body.kind() != BodyKind::Rigid {
+            return None;
+        }
+        let step = match places.poses.get(2 * at..2 * at + 2) {
+            Some(&[start, end]) if body.is_device_resident() => PoseStep::new(start, end),
+            _ if body.is_device_resident() => return None,
+            _ => body.pose_step(),
+        };
+        step.turns().then_some(step)
+    };
+    bodies.iter().enumerate().map(step).collect()
+}
+
+/// Returns the vertices of a row at the times that its geometry needs. `own` are their numbers in
+/// their bodies.
+fn around(
+    named: &Named,
+    own: [u32; 4],
+    bodies: &[Body],
+    (ends, steps): (&[[[f64; 3]; 2]; 4], [Option<PoseStep>; 2]),
+) -> Option<Corners> {
+    if steps == [None; 2] {
+        return Some(Corners::straight(ends, named.time));
+    }
+    let first = named.kind.vertices_of_a();
+    let at = |time: f64| {
+        let poses = steps.map(|step| step.and_then(|step| step.at(time)));
+        let mut corners = Corners::straight(ends, time).now;
+        for (k, corner) in corners.iter_mut().enumerate() {
+            let side = usize::from(k >= first);
+            if let Some(pose) = poses[side] {
+                let mesh = bodies.get(named.bodies[side].index())?.positions_t0();
+                *corner = pose.apply(mesh.get_f64(own[k] as usize)?);
+            }
+        }
+        Some(corners)
+    };
+    let [before, after] = [(named.time - SHORTLY).max(0.0), (named.time + SHORTLY).min(1.0)];
+    Some(Corners { now: at(named.time)?, before: at(before)?, after: at(after)?, turns: true })
+}
+
+/// Part of a step before and after a contact within which a turning body's approach is looked at.
+const SHORTLY: f64 = 1.0 / 65536.0;
 
 /// Returns the first vertex of the body of each corner, and the four vertices by their numbers
 /// through all bodies. `None` if there are no such features.
