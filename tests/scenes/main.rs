@@ -10,3 +10,4 @@ mod several;
 mod slices;
 mod starts_crossing;
 mod submit;
+mod turning;
