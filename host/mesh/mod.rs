@@ -6,6 +6,7 @@
 //! Files are read and written by the package `nearmiss-io`.
 
 mod difference;
+mod matrix_problem;
 mod obj_problem;
 mod ply_problem;
 mod points;
@@ -18,6 +19,7 @@ mod weld;
 
 pub use crate::scene::Body;
 pub(crate) use difference::difference;
+pub use matrix_problem::MatrixProblem;
 pub use obj_problem::ObjProblem;
 pub use ply_problem::PlyProblem;
 pub use points::{Coordinate, Points};

@@ -1,6 +1,6 @@
 //! Problems of inputs. Each message names the element and its value, and how to correct it.
 
-use super::{ObjProblem, PlyProblem};
+use super::{MatrixProblem, ObjProblem, PlyProblem};
 
 /// Problem of a mesh, a pair of frames or a scene name. [`crate::Error::Input`] names the file.
 ///
@@ -70,6 +70,9 @@ pub enum Problem {
         /// The translation, as passed.
         translation: [f64; 3],
     },
+    /// A matrix that is no rotation and translation.
+    #[error(transparent)]
+    Matrix(#[from] MatrixProblem),
     /// A pose that moves a body out of the range of coordinates.
     #[error(
         "has a pose that moves it to coordinates of {size:e}; they may be at most 2^480 in size: \

@@ -5,6 +5,7 @@
 
 mod body;
 mod device_motion;
+mod matrix;
 mod motion;
 mod place;
 mod pose;

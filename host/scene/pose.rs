@@ -18,7 +18,11 @@ use nearmiss_kernels::stage::place::moved;
 /// // A quarter turn about z, and 2 up.
 /// let half = 0.5_f64.sqrt();
 /// let pose = Pose { rotation: [0.0, 0.0, half, half], translation: [0.0, 0.0, 2.0] };
+/// // The same by a matrix, in rows.
+/// let matrix = [[0.0, -1.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 2.0], [0.0, 0.0, 0.0, 1.0]];
+/// assert_eq!(Pose::from_matrix(matrix)?.matrix(), matrix);
 /// # let _ = pose;
+/// # Ok::<(), nearmiss::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
