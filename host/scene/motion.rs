@@ -68,3 +68,38 @@ impl<'a> Motion<'a> {
         }
     }
 }
+
+impl From<Pose> for Motion<'_> {
+    /// A rigid body stands in this pose.
+    fn from(pose: Pose) -> Self {
+        Motion::Pose(pose)
+    }
+}
+
+impl From<PoseStep> for Motion<'_> {
+    /// A rigid body moves by this step.
+    fn from(step: PoseStep) -> Self {
+        Motion::PoseStep(step)
+    }
+}
+
+impl From<[Pose; 2]> for Motion<'_> {
+    /// A rigid body moves from the first pose to the second. It turns by the shorter arc, about the
+    /// origin of its mesh.
+    fn from(ends: [Pose; 2]) -> Self {
+        Motion::PoseStep(ends.into())
+    }
+}
+
+impl From<DeviceMotion> for Motion<'_> {
+    /// Positions or poses in device memory.
+    fn from(motion: DeviceMotion) -> Self {
+        Motion::OnDevice(motion)
+    }
+}
+
+impl<'a> From<&Motion<'a>> for Motion<'a> {
+    fn from(motion: &Motion<'a>) -> Self {
+        *motion
+    }
+}

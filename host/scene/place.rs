@@ -10,24 +10,26 @@ use nearmiss_kernels::math::Vec3;
 pub type Bounds = [[f64; 3]; 2];
 
 impl Body {
-    /// Returns the body after a motion: for scenes that begin there.
+    /// Returns the body after a motion: for scenes that begin there. A [`Pose`], a [`PoseStep`] or
+    /// any [`Motion`].
     ///
     /// ```
-    /// use nearmiss::scene::{Motion, Pose};
+    /// use nearmiss::scene::Pose;
     /// use nearmiss::{Body, Mesh, mesh::Positions};
     ///
     /// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     /// let mesh = Mesh::new("a triangle", Positions::F32(corners), vec![[0, 1, 2]])?;
-    /// let body = Body::rigid(mesh).at(&Motion::Pose(Pose::at([0.0, 0.0, 2.0])))?;
+    /// let body = Body::rigid(mesh).at(Pose::at([0.0, 0.0, 2.0]))?;
     /// assert_eq!(body.poses()[0].translation, [0.0, 0.0, 2.0]);
     /// # Ok::<(), nearmiss::Error>(())
     /// ```
     ///
     /// # Errors
     /// As of [`Body::check`].
-    pub fn at(mut self, input: &Motion) -> Result<Body, Error> {
-        self.check(input)?;
-        self.put(input);
+    pub fn at<'a>(mut self, motion: impl Into<Motion<'a>>) -> Result<Body, Error> {
+        let motion = motion.into();
+        self.check(&motion)?;
+        self.put(&motion);
         Ok(self)
     }
 
