@@ -7,6 +7,7 @@ mod body;
 mod device_motion;
 mod matrix;
 mod motion;
+mod names;
 mod place;
 mod pose;
 mod pose_step;
