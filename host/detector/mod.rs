@@ -13,6 +13,7 @@ mod moves;
 mod placed;
 pub mod plan;
 mod portion;
+mod poses;
 mod question;
 mod ready;
 mod resident;

@@ -75,6 +75,11 @@ impl DeviceRows {
         self.rows == 0
     }
 
+    /// One of the rows; it exists, or the address is never read.
+    pub(crate) fn row(&self, row: usize) -> DeviceRows {
+        DeviceRows { address: self.address + (row * self.stride) as u64, rows: 1, ..*self }
+    }
+
     /// Precision of its numbers.
     pub fn number(&self) -> Number {
         self.number
@@ -158,7 +163,8 @@ pub enum DeviceMotion {
     Step([DeviceRows; 2]),
     /// A rigid body stands in this pose.
     Pose(DevicePose),
-    /// A rigid body moves from the first pose to the second, each vertex in a straight line.
+    /// A rigid body moves from the first pose to the second. It turns by the shorter arc, about the
+    /// origin of its mesh.
     PoseStep([DevicePose; 2]),
 }
 

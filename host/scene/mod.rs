@@ -11,6 +11,7 @@ mod names;
 mod place;
 mod pose;
 mod pose_step;
+pub(crate) mod poses;
 mod sides;
 
 pub use body::Body;
@@ -19,6 +20,7 @@ pub use motion::Motion;
 pub(crate) use place::{Bounds, NOTHING, union};
 pub use pose::Pose;
 pub use pose_step::{Path, PoseStep};
+pub use poses::Poses;
 #[doc(hidden)]
 pub use sides::{mean_side, of_edges};
 

@@ -8,6 +8,7 @@ mod extremes;
 mod matrix;
 mod pairwise;
 mod plan;
+mod poses;
 mod rule;
 mod tolerance;
 mod turns;
