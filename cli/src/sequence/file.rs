@@ -1,8 +1,9 @@
 //! Files of scenes: TOML, a table a body.
 
+use super::poses::{PathName, PoseTable, Poses};
 use nearmiss::error::Error;
 use nearmiss::mesh::Problem;
-use nearmiss::scene::{BodyKind, CollisionFilter, Pose};
+use nearmiss::scene::{BodyKind, CollisionFilter};
 use serde::Deserialize;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -16,8 +17,8 @@ pub struct Described {
     pub meshes: Vec<PathBuf>,
     /// Its kind.
     pub kind: BodyKind,
-    /// A pose a frame, or one, or none.
-    pub poses: Vec<Pose>,
+    /// A pose a frame, or one, or none; and the steps between them.
+    pub poses: Poses,
     /// Its filter.
     pub filter: CollisionFilter,
     /// How messages call it: its name, and the line at which it begins.
@@ -40,6 +41,8 @@ struct BodyTable {
     #[serde(default)]
     kind: Kind,
     poses: Option<Vec<PoseTable>>,
+    pivot: Option<[f64; 3]>,
+    path: Option<PathName>,
     environment: Option<Value>,
     group: Option<u32>,
     mask: Option<u32>,
@@ -53,19 +56,6 @@ enum Kind {
     Rigid,
     #[default]
     Deformable,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PoseTable {
-    #[serde(default = "no_rotation")]
-    rotation: [f64; 4],
-    #[serde(default)]
-    translation: [f64; 3],
-}
-
-fn no_rotation() -> [f64; 4] {
-    Pose::default().rotation
 }
 
 /// Most bytes of memory that a byte of a file takes: arrays of short numbers take most.
@@ -146,8 +136,14 @@ fn described(path: &Path, line: usize, table: Table) -> Result<Described, Error>
             format!("`meshes` must name one file if the body is {}, got {}", name_of(kind), meshes.len());
         return Err(bad(&what, "use `mesh`, or make the body deformable"));
     }
+    let path = (table.pivot, table.path);
+    for (key, is_given) in [("pivot", path.0.is_some()), ("path", path.1.is_some())] {
+        if is_given && kind != BodyKind::Rigid {
+            let what = format!("`{key}` cannot be used if the body is {}", name_of(kind));
+            return Err(bad(&what, "remove it, or make the body rigid"));
+        }
+    }
     let poses = match table.poses {
-        None => Vec::new(),
         Some(_) if kind != BodyKind::Rigid => {
             let what = format!("`poses` cannot be used if the body is {}", name_of(kind));
             return Err(bad(&what, "remove them, or make the body rigid"));
@@ -155,10 +151,7 @@ fn described(path: &Path, line: usize, table: Table) -> Result<Described, Error>
         Some(poses) if poses.is_empty() => {
             return Err(bad("`poses` is empty", "give one, or one per frame, or remove it"));
         }
-        Some(poses) => {
-            let of = |pose: PoseTable| Pose { rotation: pose.rotation, translation: pose.translation };
-            poses.into_iter().map(of).collect()
-        }
+        poses => Poses::of(poses.unwrap_or_default(), path).map_err(|(what, advice)| bad(&what, &advice))?,
     };
     let environment = match &table.environment {
         None => Some(0),

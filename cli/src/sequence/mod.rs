@@ -1,6 +1,7 @@
 //! Several frames of several bodies: from a file of a scene, or from the frames of a mesh.
 
 mod file;
+mod poses;
 pub mod steps;
 
 pub use file::text as read_text;
@@ -13,9 +14,10 @@ use file::{Described, wrong};
 use nearmiss::error::Error;
 use nearmiss::memory;
 use nearmiss::mesh::{Body, Positions};
-use nearmiss::scene::{BodyId, BodyKind, Motion, Pose, Scene};
+use nearmiss::scene::{BodyId, BodyKind, Motion, Scene};
 use nearmiss::words::counted;
 use nearmiss_io::{MeshFile, Polygons};
+use poses::Poses;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
@@ -24,14 +26,14 @@ enum Track {
     /// A deformable body, or a fixed one.
     Positions(Vec<Positions>),
     /// A rigid body.
-    Poses(Vec<Pose>),
+    Poses(Poses),
 }
 
 impl Track {
     fn frames(&self) -> usize {
         match self {
             Track::Positions(all) => all.len(),
-            Track::Poses(all) => all.len(),
+            Track::Poses(all) => all.frames.len(),
         }
     }
 
@@ -41,8 +43,8 @@ impl Track {
             _ if self.frames() < 2 => None,
             Track::Positions(all) if at_rest => Some(Motion::positions(&all[at])),
             Track::Positions(all) => Some(Motion::step(&all[at], &all[at + 1])),
-            Track::Poses(all) if at_rest => Some(Motion::pose(all[at])),
-            Track::Poses(all) => Some(Motion::PoseStep([all[at], all[at + 1]].into())),
+            Track::Poses(all) if at_rest => Some(Motion::pose(all.frames[at])),
+            Track::Poses(all) => Some(Motion::PoseStep(all.steps[at])),
         }
     }
 }
@@ -138,7 +140,7 @@ impl Sequence {
     /// Reads a scene and all of its meshes.
     fn read(path: &Path, reader: &mut Reader) -> Result<Sequence, Error> {
         let described = file::read(path)?;
-        let counts = |body: &Described| body.meshes.len().max(body.poses.len());
+        let counts = |body: &Described| body.meshes.len().max(body.poses.frames.len());
         let longest =
             described.iter().max_by_key(|body| counts(body)).map(|body| (counts(body), &body.called));
         for body in &described {
@@ -237,7 +239,6 @@ fn of_table(
     let mesh = read[&files[0]].clone();
     memory::require("the scene's bodies", mesh.mesh().face_count() as u64 * OF_A_TRIANGLE)?;
     let track = match table.kind {
-        BodyKind::Rigid if table.poses.is_empty() => Track::Poses(vec![Pose::default()]),
         BodyKind::Rigid => Track::Poses(table.poses.clone()),
         _ => track(&mesh, &files[1..], reader)?,
     };
@@ -250,19 +251,19 @@ fn of_table(
     };
     let mut body = body.with_filter(table.filter);
     if let Track::Poses(poses) = &track {
-        for (at, pose) in poses.iter().enumerate() {
-            body.check(&Motion::pose(*pose)).map_err(|e| {
+        for at in 0..poses.frames.len() {
+            body.check(&poses.up_to(at)).map_err(|e| {
                 let (what, advice) = parts(&e);
                 wrong(path, format!("{}: `poses`, the one of frame {at}: {what}", table.called), advice)
             })?;
         }
-        body = body.at(&Motion::pose(poses[0]))?;
+        body = body.at(poses.frames[0])?;
     }
     Ok(Told { body, track, polygons })
 }
 
 /// The fault of an error, and its remedy.
-fn parts(error: &Error) -> (String, String) {
+pub(super) fn parts(error: &Error) -> (String, String) {
     let text = error.to_string();
     let (what, advice) = text.split_once("; ").unwrap_or((&text, "correct it"));
     (what.into(), advice.into())

@@ -23,6 +23,7 @@ mod plan;
 mod repeat;
 mod scene;
 mod scene_file;
+mod scene_poses;
 mod selftest;
 mod sequence;
 mod tables;
