@@ -1,9 +1,10 @@
 //! A body, as the caller describes it.
 
 use crate::error::refused;
+use crate::motion::{NearmissPose, UNMOVED};
 use crate::rows::{NearmissNumber, NearmissRows, items, text};
 use nearmiss::mesh::Problem;
-use nearmiss::scene::CollisionFilter;
+use nearmiss::scene::{CollisionFilter, Pose};
 use nearmiss::{Body, Error, Mesh};
 use std::ffi::c_char;
 use std::ptr::null;
@@ -61,6 +62,8 @@ pub struct NearmissBody {
     pub group: u32,
     /// Bits of the groups that it collides with. 0: it collides with no other body.
     pub mask: u32,
+    /// The pose of a rigid body at the start.
+    pub pose: NearmissPose,
 }
 
 /// A deformable body without a mesh, in environment 0, that collides with all others and itself.
@@ -83,6 +86,7 @@ pub extern "C" fn nearmiss_body() -> NearmissBody {
         everywhere: 0,
         group,
         mask,
+        pose: UNMOVED,
     }
 }
 
@@ -123,12 +127,19 @@ impl NearmissBody {
         if self.triangle_count == 0 {
             return Err(Error::Input { file: name, problem: Problem::NoTriangles });
         }
+        let is_rigid = self.kind == NearmissBodyKind::NEARMISS_BODY_RIGID as u32;
+        if !is_rigid && self.pose != UNMOVED {
+            return Err(refused(
+                format!("pose of {name} is set, which is not rigid"),
+                "make it NEARMISS_BODY_RIGID, or keep the pose of nearmiss_body()",
+            ));
+        }
         let filter = self.filter(&name)?;
         nearmiss::memory::require("triangles", size_of_val(corners) as u64)?;
         let faces = corners.as_chunks::<3>().0.to_vec();
         let body = make(Mesh::new(name, points.positions()?, faces)?).with_filter(filter);
         body.check_filter()?;
-        Ok(body)
+        if is_rigid { body.at(Pose::from(self.pose)) } else { Ok(body) }
     }
 
     fn filter(&self, name: &str) -> Result<CollisionFilter, Error> {

@@ -19,6 +19,8 @@ pub struct NearmissDetector {
     pub(crate) starts: Vec<Vec<[u32; 3]>>,
     /// The text that `nearmiss_detector_plan` has shown last.
     pub(crate) plan: CString,
+    /// The text that `nearmiss_detector_name` has shown last.
+    pub(crate) name: CString,
     /// Whether a call has begun and not ended.
     broken: bool,
 }
@@ -26,7 +28,8 @@ pub struct NearmissDetector {
 impl NearmissDetector {
     pub(crate) fn new(detector: Detector, device: Device) -> NearmissDetector {
         let (prepared, starts) = (Vec::new(), Vec::new());
-        NearmissDetector { detector, device, prepared, starts, plan: CString::default(), broken: false }
+        let (plan, name) = (CString::default(), CString::default());
+        NearmissDetector { detector, device, prepared, starts, plan, name, broken: false }
     }
 
     /// The work of a call with a detector. After a panic it is not used again.

@@ -12,10 +12,13 @@ mod error;
 mod frame;
 mod geometry;
 mod interrupt;
+mod matrix;
 mod motion;
+mod names;
 mod notes;
 mod on_device;
 mod plan;
+mod poses;
 mod positions;
 mod query;
 mod records;
@@ -34,10 +37,13 @@ pub use error::{NEARMISS_TEXT, NearmissCode, NearmissError, nearmiss_exit_code};
 pub use frame::*;
 pub use geometry::*;
 pub use interrupt::*;
+pub use matrix::*;
 pub use motion::*;
+pub use names::*;
 pub use notes::*;
 pub use on_device::*;
 pub use plan::*;
+pub use poses::*;
 pub use positions::*;
 pub use query::*;
 pub use records::*;
@@ -51,7 +57,7 @@ use std::ffi::c_char;
 
 /// The version of this header. It changes whenever a struct or a function changes. Compare it with
 /// `nearmiss_abi()` before any other call: a library of another version has other structs.
-pub const NEARMISS_ABI: u32 = 3;
+pub const NEARMISS_ABI: u32 = 4;
 
 /// The version of the header that this library was built with. This function and
 /// `nearmiss_version()` are the same in all versions.

@@ -32,13 +32,13 @@ pub struct NearmissRows {
     pub number: u32,
 }
 
-/// `count` points of three floats, without gaps.
+/// `count` rows of floats without gaps: points of three, or quaternions of four.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_floats(points: *const f32, count: usize) -> NearmissRows {
     NearmissRows { data: points.cast(), count, stride: 0, number: NearmissNumber::NEARMISS_F32 as u32 }
 }
 
-/// `count` points of three doubles, without gaps.
+/// `count` rows of doubles without gaps: points of three, or quaternions of four.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_doubles(points: *const f64, count: usize) -> NearmissRows {
     NearmissRows { data: points.cast(), count, stride: 0, number: NearmissNumber::NEARMISS_F64 as u32 }
@@ -121,6 +121,35 @@ impl NearmissRows {
         })
     }
 
+    /// Quaternions in memory of the host, copied to doubles.
+    ///
+    /// # Safety
+    /// Behind a `data` that is not NULL are `count` rows of four numbers.
+    pub(crate) unsafe fn quaternions(&self, name: &str) -> Result<Vec<[f64; 4]>, Error> {
+        let number = self.number(name)?;
+        let size = number.bytes();
+        let stride = if self.stride == 0 { 4 * size } else { self.stride };
+        if stride < 4 * size || !stride.is_multiple_of(size) {
+            return Err(refused(
+                format!("stride of {name} is no multiple of {size} from {}, got {stride}", 4 * size),
+                "set stride to 0 for rows without gaps",
+            ));
+        }
+        if self.count == 0 {
+            return Ok(Vec::new());
+        }
+        self.check_host(name, size, stride)?;
+        nearmiss::memory::require("quaternions", (self.count as u64).saturating_mul(32))?;
+        let (data, count, stride) = (self.data, self.count, stride / size);
+        // SAFETY: the caller's promise; not NULL, aligned, and no row is beyond an object's size.
+        Ok(unsafe {
+            match number {
+                Number::F32 => spaced(data.cast(), count, stride).into_iter().map(wide).collect(),
+                Number::F64 => spaced(data.cast(), count, stride),
+            }
+        })
+    }
+
     /// Whether an object of the host may have so many rows there.
     fn check_host(&self, name: &str, size: usize, stride: usize) -> Result<(), Error> {
         let bytes = stride.checked_mul(self.count).filter(|bytes| *bytes <= isize::MAX as usize);
@@ -160,13 +189,17 @@ impl NearmissRows {
     }
 }
 
-/// Rows of three, `stride` numbers apart.
+fn wide(quaternion: [f32; 4]) -> [f64; 4] {
+    quaternion.map(f64::from)
+}
+
+/// Rows of `N`, `stride` numbers apart.
 ///
 /// # Safety
 /// All of them are there, aligned.
-unsafe fn spaced<T: Copy>(from: *const T, count: usize, stride: usize) -> Vec<[T; 3]> {
+unsafe fn spaced<T: Copy, const N: usize>(from: *const T, count: usize, stride: usize) -> Vec<[T; N]> {
     // SAFETY: the caller's promise. An array has the alignment of its elements.
-    (0..count).map(|row| unsafe { from.add(row * stride).cast::<[T; 3]>().read() }).collect()
+    (0..count).map(|row| unsafe { from.add(row * stride).cast::<[T; N]>().read() }).collect()
 }
 
 /// Items of the caller.

@@ -179,6 +179,7 @@ fn the_compiler_lays_out_the_same() {
         NearmissNearest,
         NearmissNumber,
         NearmissPose,
+        NearmissPoseRows,
         NearmissQuery,
         NearmissQueryKind,
         NearmissRebuild,

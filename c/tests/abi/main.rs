@@ -3,6 +3,7 @@
 mod answers;
 mod interrupted;
 mod one_detector;
+mod poses;
 mod refusals;
 mod submitted;
 

@@ -6,7 +6,7 @@ use nearmiss_lab::scene::soup;
 use std::ptr::{null, null as null_of};
 
 #[track_caller]
-fn refused<T>(outcome: Told<T>, code: NearmissCode, says: &str) {
+pub fn refused<T>(outcome: Told<T>, code: NearmissCode, says: &str) {
     let Err((was, text)) = outcome else { panic!("not refused: {says}") };
     assert!(was == code && text.contains(says), "{was:?}: {text}");
 }
