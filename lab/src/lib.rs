@@ -11,6 +11,7 @@ pub mod pairs;
 pub mod robustness;
 pub mod scene;
 pub mod tables;
+pub mod turns;
 
 pub use case::{Case, Features};
 pub use one_query::{OneQuery, OneQueryOnSeveral};

@@ -19,3 +19,4 @@ mod moving;
 mod near;
 mod orient;
 mod relation;
+mod turning;

@@ -11,4 +11,5 @@ mod pairs;
 mod prim;
 mod queries;
 mod sweep;
+mod turning;
 mod volume;

@@ -24,6 +24,7 @@ pub fn check(command: &Command, own: &ArgMatches) -> Result<(), Error> {
             Lab::Tables(args) => tables(args, given),
             Lab::Trade(args) => trade(args, given),
             Lab::Bench(args) => machine(&args.machine, given),
+            Lab::Turns(_) => Ok(()),
         },
         Command::Selftest(_) | Command::Completions(_) | Command::Man(_) => Ok(()),
     }

@@ -1,6 +1,6 @@
 //! The arguments of `lab`: a command for each experiment.
 
-use super::{BenchArgs, PlanArgs, SceneArgs, TablesArgs, TradeArgs};
+use super::{BenchArgs, PlanArgs, SceneArgs, TablesArgs, TradeArgs, TurnsArgs};
 use clap::{Args, Subcommand};
 
 #[derive(Args)]
@@ -22,4 +22,6 @@ pub enum Lab {
     Plan(Box<PlanArgs>),
     /// Write a generated scene as PLY files.
     Scene(Box<SceneArgs>),
+    /// Judge the test of turning features on hostile pairs.
+    Turns(Box<TurnsArgs>),
 }

@@ -22,6 +22,7 @@ mod shell;
 mod tables;
 mod to_query;
 mod trade;
+mod turns;
 
 pub use bench::{BenchArgs, Question};
 pub use detect::DetectArgs;
@@ -37,6 +38,7 @@ pub use selftest::SelftestArgs;
 pub use shell::{CompletionsArgs, ManArgs};
 pub use tables::{Profile, Table, TablesArgs};
 pub use trade::TradeArgs;
+pub use turns::TurnsArgs;
 
 use crate::output::stdout_failed;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};

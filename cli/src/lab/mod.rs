@@ -5,6 +5,7 @@ mod plan;
 mod scene;
 mod tables;
 mod trade;
+mod turns;
 
 use crate::args::{Lab, LabArgs, ReportArgs};
 use crate::output::{Target, print, say};
@@ -22,6 +23,7 @@ pub fn lab(args: &LabArgs) -> Result<ExitCode, Error> {
         Lab::Bench(args) => bench::bench(args),
         Lab::Plan(args) => plan::plan(args),
         Lab::Scene(args) => scene::scene(args),
+        Lab::Turns(args) => turns::turns(args),
     }
 }
 

@@ -1,13 +1,15 @@
-//! Answers by exact rational arithmetic; imports nothing from the kernels.
+//! Answers by exact rational arithmetic, or by enclosures; imports nothing from the kernels.
 //!
 //! Two triangles ([`triangles_meet`]): linear programming over the rationals. The method shares
 //! nothing with the kernels', not even a determinant or its sign. It is slow, about a millisecond a
 //! pair, and uniform: no input is a special case. Two moving features ([`first_contact`]): roots of
 //! polynomials, as algebraic numbers. Two features at one time ([`near`]): fractions of integers.
+//! Two features of turning bodies ([`turning`]): enclosures of the motion in 106 bits.
 
 mod motion;
 pub mod near;
 pub mod simplex;
+pub mod turning;
 
 pub use motion::{Toi, first_contact, first_contact_until, meet_at};
 

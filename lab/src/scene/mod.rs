@@ -17,7 +17,7 @@ mod flamenco;
 mod known;
 mod nbody;
 mod princess;
-mod rng;
+pub(crate) mod rng;
 mod soup;
 mod sphere;
 #[cfg(test)]

@@ -1,9 +1,9 @@
-//! Every constant of `tolerance.rs` is measured by a test of its name, or is listed here with why not.
+//! Every constant of `tolerance.rs` and of the folder `tolerance` is measured by a test of its name, or is listed here with why not.
 
 use std::path::Path;
 
 /// Constants on which no proof of an answer rests, or which are no allowance.
-const OTHERS: [(&str, &str); 31] = [
+const OTHERS: [(&str, &str); 37] = [
     ("U32", "the unit"),
     ("U64", "the unit"),
     ("CUBIC_VALUE", "a guess: the cubic's roots guarantee nothing"),
@@ -37,6 +37,12 @@ const OTHERS: [(&str, &str); 31] = [
     ("POSE_UNIT", "a range of what is taken for a pose"),
     ("RELATIVE_LIMIT", "a range"),
     ("PLANE_LIMIT", "a range"),
+    ("TURN_FAINT", "a range"),
+    ("TURNING_FAINT", "a range"),
+    ("TURNING_FINEST", "a limit of what may be asked"),
+    ("TURNING_SHORTEST", "a cost"),
+    ("TURNING_NEAR", "a cost"),
+    ("TURNING_ACROSS", "a cost"),
     ("PLACED_BOX", "rounded up for nothing: `the_error_of_a_placed_box` measures it"),
 ];
 
@@ -75,7 +81,8 @@ fn root() -> &'static Path {
 }
 
 fn tolerance() -> String {
-    read(&root().join("kernels/src/math/tolerance.rs"))
+    let files = ["tolerance.rs", "tolerance/turning.rs"];
+    files.iter().map(|file| read(&root().join("kernels/src/math").join(file))).collect()
 }
 
 fn tests() -> String {

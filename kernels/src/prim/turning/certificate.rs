@@ -6,7 +6,7 @@
 //! (`prim::isolate::suspect`). The values are those of the true motion: no curve enters.
 
 use super::length;
-use super::motion::{Motion, Place};
+use super::motion::{Motion, Place, ring};
 use crate::math::Vec3;
 use crate::math::tolerance::U64;
 use crate::math::tolerance::turning::{TURN_UP, TURNING_CURVE, TURNING_VOLUME};
@@ -25,18 +25,9 @@ const STEPS: u32 = 24;
 /// Lengths of the certain contact's time that are tried, at most.
 const LENGTHS: u32 = 10;
 
-/// The corners in the order of the hull's border.
-#[inline(always)]
-fn ring<const N: usize>(k: usize) -> usize {
-    if N == 3 { [0, 1, 2, 0][k] } else { [0, 1, 3, 2, 0][k] }
-}
-
 impl<const N: usize> Motion<N> {
     /// A certain contact between two times, if the volume has opposite signs at them and its root
     /// is one. `failed` is a root that is none, as far as doubles can say; it is not tried again.
-    ///
-    /// The root is found by the rule of false position in its Illinois form. The longest time about
-    /// it is tried first: before a short one lie more slices.
     #[inline(never)]
     pub fn contact(
         &self,
@@ -44,6 +35,23 @@ impl<const N: usize> Motion<N> {
         to: &Place<N>,
         tolerance: f64,
         failed: &mut f64,
+    ) -> Option<Contact> {
+        self.contact_by(from, to, tolerance, failed, |moved| moved)
+    }
+
+    /// The same, of control vectors that count as moved by `moved` of what they may have moved:
+    /// tests of the certificate make it less.
+    ///
+    /// The root is found by the rule of false position in its Illinois form. The longest time about
+    /// it is tried first: before a short one lie more slices.
+    #[inline(always)]
+    pub fn contact_by(
+        &self,
+        from: &Place<N>,
+        to: &Place<N>,
+        tolerance: f64,
+        failed: &mut f64,
+        moved: impl Fn(f64) -> f64,
     ) -> Option<Contact> {
         if !(from.side() * to.side() < 0.0) || (from.t <= *failed && *failed <= to.t) {
             return None;
@@ -90,8 +98,8 @@ impl<const N: usize> Motion<N> {
             let is_least = half <= least;
             if a.side() * z.side() < 0.0 {
                 let far = (z.t - root.t).max(root.t - a.t) * TURN_UP;
-                let moved = self.bounds(&a, &z).speed * far + TURNING_CURVE * self.error;
-                if root.holds(moved * TURN_UP) {
+                let most = self.bounds(&a, &z).speed * far + TURNING_CURVE * self.error;
+                if root.holds(moved(most * TURN_UP)) {
                     return Some(Contact { from: a.t, to: z.t });
                 }
                 if is_least {

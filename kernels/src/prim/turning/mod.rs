@@ -53,6 +53,7 @@ pub mod slice;
 pub mod solve;
 pub mod window;
 
+pub use certificate::Contact;
 pub use motion::{Motion, Place};
 use solve::length;
 

@@ -2,14 +2,15 @@
 
 use super::rates::Rates;
 use super::{Side, length};
-use crate::math::tolerance::turning::{TURN_UP, TURNING_PLACE, TURNING_VOLUME};
+use crate::math::tolerance::turning::{TURN_UP, TURNING_ACROSS, TURNING_NEAR, TURNING_PLACE, TURNING_VOLUME};
 use crate::math::turn::Turn;
 use crate::math::{Real, Vec3};
 use crate::prim::isolate::nearest::nearest;
 
 /// A pair in motion, in the frame of its second side: that turns, and has its origin in the side's
 /// pivot. There the points of the second side move linearly, or not at all. All lengths are
-/// multiplied by the power of two that brings the reach to [1, 2). `N` is 3 for a vertex and a face,
+/// multiplied by the power of two that brings the largest
+/// component to [1, 2). `N` is 3 for a vertex and a face,
 /// 4 for two edges.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion<const N: usize> {
@@ -22,6 +23,9 @@ pub struct Motion<const N: usize> {
     b: [[Vec3<f64>; 2]; 3],
     /// Bounds of the motion of points of the first side.
     pub rates: Rates,
+    /// The reach: the largest distances of the pivots from one another and of the points of either
+    /// side from its pivot, together.
+    pub reach: f64,
     /// The error of a control vector.
     pub error: f64,
     /// One unit of the input in these units.
@@ -44,10 +48,11 @@ pub struct Place<const N: usize> {
     pub volume: f64,
     /// How far `volume` may be from the true one.
     pub error: f64,
-    /// A point of the hull, next to the origin.
-    pub nearest: Vec3<f64>,
-    /// Its length.
+    /// The distance of a point of the hull, next to the origin.
     pub distance: f64,
+    /// A direction in which the hull is far from the origin: that point; if it is very near, across
+    /// a border of the hull or its plane.
+    pub direction: Vec3<f64>,
 }
 
 #[inline(always)]
@@ -61,6 +66,64 @@ pub fn edges<const N: usize>(w: &[Vec3<f64>; N]) -> [Vec3<f64>; 2] {
     if N == 3 { [w[0] - w[1], w[0] - w[2]] } else { [w[2] - w[0], w[0] - w[1]] }
 }
 
+/// The corners in the order of the hull's border.
+#[inline(always)]
+pub fn ring<const N: usize>(k: usize) -> usize {
+    if N == 3 { [0, 1, 2, 0][k] } else { [0, 1, 3, 2, 0][k] }
+}
+
+#[inline(always)]
+fn of_length(x: Vec3<f64>) -> (Vec3<f64>, f64) {
+    (x, length(x))
+}
+
+/// How far the hull is from the origin along a direction; NaN of none.
+#[inline(always)]
+fn far_along<const N: usize>(w: &[Vec3<f64>; N], d: Vec3<f64>) -> f64 {
+    let mut least = d.dot(w[0]);
+    for k in 1..N {
+        least = Real::min(least, d.dot(w[k]));
+    }
+    least / length(d)
+}
+
+/// A point of the parallelogram of two edges, near the one next to the origin. By vector products:
+/// of edges almost parallel, sums of squares would lose twice as many digits.
+#[inline(always)]
+fn of_edges<const N: usize>(w: &[Vec3<f64>; N]) -> Vec3<f64> {
+    let clamped = |x: f64| if x > 0.0 { Real::min(x, 1.0) } else { 0.0 };
+    let (o, p, q) = (w[0], w[2] - w[0], w[1] - w[0]);
+    let n = p.cross(q);
+    let u = clamped(q.cross(o).dot(n) / n.dot(n));
+    let v = clamped(-(o + p * u).dot(q) / q.dot(q));
+    let u = clamped(-(o + q * v).dot(p) / p.dot(p));
+    (w[0] * (1.0 - v) + w[1] * v) * (1.0 - u) + (w[2] * (1.0 - v) + w[N - 1] * v) * u
+}
+
+/// The direction across the border of the hull that has the corner nearest along `d` and is across
+/// `d` but for the rounding of that; of several the one along which `d` differs most. Else `d`.
+///
+/// The point next to the origin errs by roundings of the hull's size. If it is very near, its
+/// direction is too far from across its border: one end of that seems to be behind the origin.
+#[inline(always)]
+fn across_border<const N: usize>(w: &[Vec3<f64>; N], d: Vec3<f64>, rounding: f64) -> Vec3<f64> {
+    let mut least = d.dot(w[0]);
+    for k in 1..N {
+        least = Real::min(least, d.dot(w[k]));
+    }
+    let (mut most, mut square, mut border) = (0.0, 1.0, Vec3([0.0; 3]));
+    for k in 0..N {
+        let (x, y) = (w[ring::<N>(k)], w[ring::<N>(k + 1)]);
+        let e = y - x;
+        let (along, long) = (d.dot(e), e.dot(e));
+        let has_least = Real::min(d.dot(x), d.dot(y)) <= least;
+        if has_least && along * along < rounding * rounding * long && along.abs() > most.abs() {
+            (most, square, border) = (along, long, e);
+        }
+    }
+    d - border * (most / square)
+}
+
 impl<const N: usize> Motion<N> {
     /// The motion of two sides.
     #[inline]
@@ -69,38 +132,46 @@ impl<const N: usize> Motion<N> {
         let mut pivot = [a.pivot[0] - b.pivot[0], a.pivot[1] - b.pivot[1]];
         let mut x = [a.points[0], a.points[if N == 3 { 0 } else { 1 }]];
         let mut y = [b.points[0], b.points[1], b.points[if N == 3 { 2 } else { 1 }]];
-        let (mut far, mut sum) = (length(pivot[0]).max(length(pivot[1])), 0.0);
-        let (mut far_a, mut far_b) = (0.0, 0.0);
+        // The largest component, and a sum that is finite if all numbers are.
+        let (mut most, mut sum) = (0.0, a.phi.dot(a.phi) + b.phi.dot(b.phi));
+        let mut consider = |x: Vec3<f64>| {
+            let x = x.map(Real::abs);
+            most = Real::max(most, x[0].max(x[1]).max(x[2]));
+            sum = sum + (x[0] + x[1] + x[2]);
+        };
         for i in 0..2 {
+            consider(pivot[i]);
             for k in 0..of_a {
-                far_a = Real::max(far_a, length(x[k][i]));
+                consider(x[k][i]);
             }
             for k in 0..of_b {
-                far_b = Real::max(far_b, length(y[k][i]));
+                consider(y[k][i]);
             }
-            sum = sum + pivot[i].map(Real::abs).dot(Vec3([1.0; 3]));
         }
-        far = (far + far_a + far_b) * TURN_UP;
-        sum = sum + a.phi.dot(a.phi) + b.phi.dot(b.phi) + far;
         let finite = sum < f64::INFINITY;
-        let parts = far.parts();
+        let parts = most.parts();
         let mut scale = 1.0;
         if finite && parts.mantissa != 0 {
             scale = f64::pow2(-(parts.exponent + 63 - parts.mantissa.leading_zeros() as i32));
         }
+        let (mut far, mut far_a, mut far_b) = (0.0, 0.0, 0.0);
         for i in 0..2 {
             pivot[i] = pivot[i] * scale;
+            far = Real::max(far, length(pivot[i]));
             for k in 0..2 {
                 x[k][i] = x[k][i] * scale;
+                far_a = Real::max(far_a, length(x[k][i]));
             }
             for k in 0..3 {
                 y[k][i] = y[k][i] * scale;
+                far_b = Real::max(far_b, length(y[k][i]));
             }
         }
-        let error = TURNING_PLACE * far * scale;
+        let reach = (far + far_a + far_b) * TURN_UP;
+        let error = TURNING_PLACE * reach;
         let turns = [Turn::new(a.phi), Turn::new(b.phi)];
         let rates = Rates::of(a.phi, b.phi, &pivot, &x, &y);
-        Motion { turns, pivot, a: x, b: y, rates, error, scale, finite }
+        Motion { turns, pivot, a: x, b: y, rates, reach, error, scale, finite }
     }
 
     /// The pair at a time. About 350 operations.
@@ -119,10 +190,15 @@ impl<const N: usize> Motion<N> {
         }
         let reach = reach.sqrt() * TURN_UP + self.error;
         let [p, q] = edges(&w);
-        let volume = p.cross(q).dot(w[0]);
+        let normal = p.cross(q);
+        let volume = normal.dot(w[0]);
         let error = self.volume_error(length(p), length(q), length(w[0]));
-        let nearest = nearest(&w);
-        Place { t, w, reach, volume, error, nearest, distance: length(nearest) }
+        let (direction, distance) = of_length(nearest(&w));
+        let mut place = Place { t, w, reach, volume, error, distance, direction };
+        if distance < TURNING_NEAR * self.reach {
+            place.refine(normal, TURNING_ACROSS * self.reach);
+        }
+        place
     }
 
     /// How far the volume of edges and a vector of such lengths may be from the true one. Edges of
@@ -138,6 +214,22 @@ impl<const N: usize> Motion<N> {
 }
 
 impl<const N: usize> Place<N> {
+    /// Betters the direction, and the distance of edges, of features that are very near.
+    #[inline(never)]
+    fn refine(&mut self, normal: Vec3<f64>, rounding: f64) {
+        if N == 4 {
+            let (point, distance) = of_length(of_edges(&self.w));
+            if distance < self.distance {
+                (self.direction, self.distance) = (point, distance);
+            }
+        }
+        self.direction = across_border(&self.w, self.direction, rounding);
+        let normal = if self.volume > 0.0 { normal } else { -normal };
+        if far_along(&self.w, normal) > far_along(&self.w, self.direction) {
+            self.direction = normal;
+        }
+    }
+
     /// The certain sign of the volume; zero if none is.
     #[inline(always)]
     pub fn side(&self) -> f64 {

@@ -31,9 +31,12 @@ use crate::math::{Real, Vec3};
 /// distance.
 #[derive(Clone, Copy, Debug)]
 pub struct Rate {
-    by_difference: f64,
-    own: f64,
-    by_distance: f64,
+    /// The bound by the difference of both turns.
+    pub by_difference: f64,
+    /// The bound by the distance, of a point in the second side's pivot.
+    pub own: f64,
+    /// What a unit of distance adds to that.
+    pub by_distance: f64,
 }
 
 impl Rate {

@@ -44,7 +44,7 @@ impl<const N: usize> Motion<N> {
         let h = (to.t - from.t) * TURN_UP;
         let reach = from.reach.max(to.reach);
         // Half the slice away from the nearer end, at the speed of the farthest reach of all.
-        let most = self.rates.first.within(2.0);
+        let most = self.rates.first.within(self.reach);
         let reach = (reach + most * (0.5 * h)) * TURN_UP;
         let (second, third) = (self.rates.second.within(reach), self.rates.third.within(reach));
         let mut way = 0.0;

@@ -30,6 +30,14 @@ enum Look<const N: usize> {
     Open(Option<Place<N>>),
 }
 
+/// What follows a slice that is not clear.
+enum Next<const N: usize> {
+    /// Its part between two times.
+    Part(f64, f64),
+    /// Its first half, if it has one.
+    Middle(Option<Place<N>>),
+}
+
 impl<const N: usize> Motion<N> {
     /// Whether the features are certainly within a separation at a place.
     #[inline(always)]
@@ -54,12 +62,12 @@ impl<const N: usize> Motion<N> {
         let is_flat = b.chord <= FLAT * from.distance.min(to.distance) || b.chord <= 2.0 * self.error;
         let middle = (between && !is_flat).then(|| self.at(t));
         let c = self.curves(from, middle.as_ref(), to, b);
-        let mut directions = [from.nearest, to.nearest, from.nearest + to.nearest];
+        let mut directions = [from.direction, to.direction, from.direction + to.direction];
         if let Some(middle) = &middle {
-            directions[2] = middle.nearest;
+            directions[2] = middle.direction;
         }
-        let side = from.side();
-        let apart = (side * to.side() > 0.0 && self.is_apart_by_plane(&c, side, separation))
+        let side = if from.volume > 0.0 { 1.0 } else { -1.0 };
+        let apart = (side * to.volume > 0.0 && self.is_apart_by_plane(&c, side, separation))
             || self.is_apart_along(&c, directions[1], separation)
             || self.is_apart_along(&c, directions[0], separation)
             || self.is_apart_along(&c, directions[2], separation)
@@ -76,7 +84,7 @@ impl<const N: usize> Motion<N> {
         if !self.finite || !(p.end > 0.0) || p.min_separation.is_nan() {
             return Verdict::undecided(0.0, p.end, 0, true);
         }
-        if !(self.error > 0.0) {
+        if !(self.reach > 0.0) {
             // All points are at the origin, throughout.
             return Verdict::TOUCHING;
         }
@@ -88,6 +96,8 @@ impl<const N: usize> Motion<N> {
         let mut limit = p.end;
         let mut certain: Option<Contact> = None;
         let (mut slices, mut near, mut clear, mut failed) = (0, 0, false, -1.0);
+        // From `part` to `beyond` boxes do not meet.
+        let (mut part, mut beyond) = (p.end, p.end);
         loop {
             let give_up = slices >= p.max_iterations;
             slices += 1;
@@ -111,39 +121,56 @@ impl<const N: usize> Motion<N> {
             let h = to.t - from.t;
             let next = match self.look(&from, &to, &b, separation) {
                 Look::Clear => {
-                    if to.t >= limit {
+                    let mut step = if clear { 2.0 * h } else { h };
+                    from = to;
+                    if from.t >= part && beyond > from.t {
+                        // What was cut off was about as long as the slice then.
+                        step = step.max(beyond - from.t);
+                        from = self.at(beyond);
+                    }
+                    if from.t >= limit {
                         return match certain {
                             Some(contact) => verdict(certain, contact.from),
                             None => Verdict::separated(p.end, slices),
                         };
                     }
-                    from = to;
-                    let step = if clear { 2.0 * h } else { h };
+                    if from.t >= part {
+                        (part, beyond) = (limit, limit);
+                    }
                     clear = true;
-                    let t = from.t + step;
-                    to = self.at(if t + 0.25 * step < limit { t } else { limit });
+                    let (t, most) = (from.t + step, part.min(limit));
+                    to = self.at(if t + 0.25 * step < most { t } else { most });
                     continue;
                 }
-                Look::Part(start, end) => {
-                    if start > from.t {
-                        from = self.at(start);
-                    }
-                    Some(self.at(end))
-                }
-                Look::Open(middle) => middle,
+                Look::Part(start, end) => Next::Part(start, end),
+                Look::Open(middle) => Next::Middle(middle),
             };
-            if separation == 0.0
-                && let Some(contact) = self.contact(&from, &to, tolerance, &mut failed)
+            clear = false;
+            let found =
+                if separation > 0.0 { None } else { self.contact(&from, &to, tolerance, &mut failed) };
+            if let Next::Part(start, _) = next
+                && start > from.t
             {
-                certain = Some(contact);
+                from = self.at(start);
+            }
+            if let Some(contact) = found {
+                certain = found;
                 limit = contact.from;
                 if !(limit > from.t) {
                     return verdict(certain, from.t);
                 }
                 to = self.at(limit);
-                clear = false;
                 continue;
             }
+            let next = match next {
+                Next::Part(_, end) => {
+                    beyond = if to.t >= part { beyond } else { to.t };
+                    part = end;
+                    to = self.at(end);
+                    continue;
+                }
+                Next::Middle(middle) => middle,
+            };
             let is_shortest = next.is_none() || h <= TURNING_SHORTEST;
             let way = h * b.speed;
             let is_near = way <= SHORT * tolerance && from.distance <= separation + 0.5 * tolerance;
@@ -162,7 +189,6 @@ impl<const N: usize> Motion<N> {
                     }
                 }
             }
-            clear = false;
             if let Some(next) = next {
                 to = next;
             }
