@@ -8,6 +8,7 @@ use nearmiss::Rows;
 use nearmiss::query::QueryKind;
 use nearmiss::words::counted;
 use pyo3::prelude::*;
+use std::sync::Arc;
 
 /// Base class of all answers.
 ///
@@ -20,6 +21,8 @@ pub struct Answer {
     /// When it was answered.
     pub stamp: Stamp,
     pub columns: Columns,
+    /// Names of all bodies by their numbers.
+    pub names: Arc<Vec<String>>,
 }
 
 /// The answer as an object of the class of its query.
@@ -27,9 +30,10 @@ pub fn typed<'py>(
     py: Python<'py>,
     contacts: nearmiss::Contacts,
     stamp: Stamp,
+    names: Arc<Vec<String>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let kind = contacts.query.kind();
-    let base = PyClassInitializer::from(Answer { contacts, stamp, columns: Columns::default() });
+    let base = PyClassInitializer::from(Answer { contacts, stamp, columns: Columns::default(), names });
     Ok(match kind {
         QueryKind::Discrete => Bound::new(py, base.add_subclass(TrianglePairs))?.into_any(),
         QueryKind::Continuous => Bound::new(py, base.add_subclass(Contacts))?.into_any(),

@@ -2,6 +2,7 @@
 
 use crate::borrowed::Held;
 use nearmiss::Error;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// When contacts were answered: by which detector, and how often it had moved its bodies.
@@ -16,6 +17,8 @@ pub struct Stamp {
 pub enum Does {
     /// Bodies may be elsewhere then, and so may the answers on the device.
     Moves,
+    /// Bodies come, go or change.
+    Edits,
     /// Answers on the device may be elsewhere then.
     Queries,
     /// All stays as it is.
@@ -38,6 +41,8 @@ pub struct Asked {
     pub moves: u64,
     /// Queries that were collected since bodies last moved.
     collected: Vec<nearmiss::Query>,
+    /// Names of all bodies by their numbers, once an answer has them.
+    names: Option<Arc<Vec<String>>>,
     /// Keeps the arrays of updates that a GPU may still read, until a call waits.
     pub placing: Vec<Held>,
     /// Arrays that submissions read. Dropped after the detector, which reads them.
@@ -57,6 +62,7 @@ impl Asked {
             asked: 0,
             moves: 0,
             collected: Vec::new(),
+            names: None,
             placing: Vec::new(),
             held: Vec::new(),
         }
@@ -84,9 +90,12 @@ impl Asked {
 
     /// Counts a call.
     pub fn count(&mut self, does: Does) {
-        self.asked += u64::from(matches!(does, Does::Moves | Does::Queries));
+        self.asked += u64::from(matches!(does, Does::Moves | Does::Edits | Does::Queries));
+        if does == Does::Edits {
+            self.names = None;
+        }
         let may_move = match does {
-            Does::Moves | Does::Submits => true,
+            Does::Moves | Does::Edits | Does::Submits => true,
             Does::Queries | Does::Reads => false,
             Does::Collects(query) => self.collected.contains(&query),
         };
@@ -97,6 +106,13 @@ impl Asked {
         if let Does::Collects(query) = does {
             self.collected.push(query);
         }
+    }
+
+    /// Names of all bodies by their numbers.
+    pub fn names(&mut self) -> Arc<Vec<String>> {
+        let bodies = self.detector.scene().bodies();
+        let made = || Arc::new(bodies.iter().map(|body| body.name().to_owned()).collect());
+        self.names.get_or_insert_with(made).clone()
     }
 
     /// The stamp of the current answer.

@@ -3,13 +3,13 @@
 use crate::answer::Answer;
 use crate::asked::{Asked, Does};
 use crate::device::Device;
-use crate::errors::{choice, raised};
-use crate::frame::known;
+use crate::errors::raised;
 use crate::geometry::Geometry;
+use crate::key::{Key, body_of};
 use crate::on_device::DeviceAnswer;
-use crate::pose::Ends;
-use crate::query::{Accuracy, Query, discrete, iterations_of, near};
-use crate::scene::{Body, Scene};
+use crate::pose::Pose;
+use crate::query::{Accuracy, Query, discrete, iterations_of, near, queries_of};
+use crate::scene::{Body, Scene, scene_of};
 use crate::turns::python;
 use crate::watch::watched;
 use nearmiss::Interrupt;
@@ -48,16 +48,7 @@ impl Detector {
             Some(device) => device,
             None => py.get_type::<Device>().call0()?.cast_into::<Device>()?.unbind(),
         };
-        let bodies = match (scene.cast::<Body>(), scene.cast::<Scene>()) {
-            (Ok(body), _) => nearmiss::Scene::from(body.get().body.clone()),
-            (_, Ok(scene)) => scene.borrow().scene.clone(),
-            _ => {
-                return Err(choice(
-                    format!("scene must be a Scene or a Body, got {}", scene.get_type().name()?),
-                    "use Detector(Scene(*bodies))",
-                ));
-            }
-        };
+        let bodies = scene_of(scene)?;
         let (turn, interrupt) = (&device.get().turn, Interrupt::new());
         let on = device.get().device.clone().with_interrupt(&interrupt);
         let detector = watched(py, &interrupt, |watch| {
@@ -74,9 +65,9 @@ impl Detector {
 
     /// Move bodies for the next queries.
     ///
-    /// - `inputs`: a mapping from body numbers to motions. Deformable bodies take positions, (n, 3)
-    ///   numbers, or a tuple of two such arrays for the start and the end of a step. Rigid bodies take
-    ///   a Pose, or a tuple of two.
+    /// - `inputs`: a mapping from body numbers or names to motions. Deformable bodies take positions,
+    ///   (n, 3) numbers, or a tuple of two such arrays for the start and the end of a step. Rigid
+    ///   bodies take a Pose or a (4, 4) array, or a tuple of two, or a PoseStep.
     ///
     /// Other bodies rest where they are, or where their step ended. Discrete, Near and Distance use
     /// the start of a step. Arrays of the detector's GPU are read in place, and so are packed numpy
@@ -97,6 +88,30 @@ impl Detector {
         })?;
         drop(unread);
         done.map_err(raised)
+    }
+
+    /// Move many rigid bodies at once, by arrays of poses with a row a body.
+    ///
+    /// - `ids`: numbers or names of the bodies.
+    /// - `positions`: (n, 3) numbers, the translations.
+    /// - `quaternions`: (n, 4) numbers, unit quaternions (x, y, z, w).
+    /// - `end_positions`, `end_quaternions`: poses at the end of a step, see PoseStep. Default: bodies
+    ///   rest.
+    ///
+    /// As `update` with a Pose for each. Arrays of the detector's GPU are read in place. Raises
+    /// InvalidArgumentError for other numbers of rows, and for a body that does not exist, is named
+    /// twice or is not rigid; InputError for an invalid pose. It names the row and the body.
+    #[pyo3(signature = (ids, positions, quaternions, *, end_positions = None, end_quaternions = None))]
+    fn update_poses(
+        &self,
+        ids: &Bound<'_, PyAny>,
+        positions: &Bound<'_, PyAny>,
+        quaternions: &Bound<'_, PyAny>,
+        end_positions: Option<&Bound<'_, PyAny>>,
+        end_quaternions: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let ends = [[Some(positions), Some(quaternions)], [end_positions, end_quaternions]];
+        self.move_by_arrays(ids.py(), ids, ends)
     }
 
     /// Return the answer to a query, of the bodies where they are.
@@ -293,32 +308,54 @@ impl Detector {
 
     /// Add a body, and return its number.
     fn add(&self, py: Python<'_>, body: &Body) -> PyResult<usize> {
-        self.run(py, Does::Moves, |detector| detector.add(body.body.clone())).map(BodyId::index)
+        self.run(py, Does::Edits, |detector| detector.add(body.body.clone())).map(BodyId::index)
     }
 
-    /// Remove the body with that number. The next body that is added may take its number.
-    fn remove(&self, py: Python<'_>, body: usize) -> PyResult<()> {
+    /// Remove a body, by number or name. The next body that is added may take its number.
+    fn remove(&self, py: Python<'_>, #[pyo3(from_py_with = body_of)] body: Key) -> PyResult<()> {
         let id = self.body(py, body)?;
-        self.run(py, Does::Moves, |detector| detector.remove(id).map(drop))
+        self.run(py, Does::Edits, |detector| detector.remove(id).map(drop))
     }
 
-    /// Replace the body with that number.
-    fn replace(&self, py: Python<'_>, body: usize, by: &Body) -> PyResult<()> {
+    /// Replace a body, by number or name.
+    fn replace(&self, py: Python<'_>, #[pyo3(from_py_with = body_of)] body: Key, by: &Body) -> PyResult<()> {
         let id = self.body(py, body)?;
-        self.run(py, Does::Moves, |detector| detector.replace(id, by.body.clone()))
+        self.run(py, Does::Edits, |detector| detector.replace(id, by.body.clone()))
     }
 
     /// Return the place of a body at the start and the end of its step, copied to the host.
     ///
     /// Two (n, 3) arrays, or two Pose of a rigid body; both are equal if the body rests. Cost: a copy
     /// of all vertices if only the device has them, and a wait.
-    fn download_positions<'py>(&self, py: Python<'py>, body: usize) -> Answered<'py> {
+    fn download_positions<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = body_of)] body: Key,
+    ) -> Answered<'py> {
+        self.ends_of(py, body)?.python(py)
+    }
+
+    /// Return the pose of a rigid body; in a step, the pose at its start. Cost: see `download_positions`.
+    fn pose(&self, py: Python<'_>, #[pyo3(from_py_with = body_of)] body: Key) -> PyResult<Pose> {
+        Ok(self.poses_of(py, body)?.0)
+    }
+
+    /// Return the poses of a rigid body at the start and the end of its step; equal if it rests.
+    fn poses(&self, py: Python<'_>, #[pyo3(from_py_with = body_of)] body: Key) -> PyResult<(Pose, Pose)> {
+        self.poses_of(py, body)
+    }
+
+    /// Return the name of a body.
+    fn name(&self, py: Python<'_>, #[pyo3(from_py_with = body_of)] body: Key) -> PyResult<String> {
         let id = self.body(py, body)?;
-        let found = self.run(py, Does::Reads, |detector| {
-            detector.download_positions()?;
-            Ok(detector.scene().get(id).map(Ends::of))
-        })?;
-        known(body, found)?.python(py)
+        self.look(py, |detector| detector.scene().get(id).map_or("", |body| body.name()).to_owned())
+    }
+
+    /// Return the number of the one body with that name.
+    ///
+    /// Raises InvalidArgumentError if no body has the name, or several have; it lists them.
+    fn id(&self, py: Python<'_>, name: String) -> PyResult<usize> {
+        Ok(self.body(py, Key::Name(name))?.index())
     }
 
     /// Numbers of all bodies, ascending.
@@ -356,21 +393,4 @@ impl Detector {
         let bodies = counted(bodies as u64, "body", "bodies");
         Ok(format!("<nearmiss.Detector: {bodies}, {}>", self.device.get().device.name()))
     }
-}
-
-/// The queries of a list.
-fn queries_of(given: &Bound<'_, PyAny>) -> PyResult<Vec<nearmiss::Query>> {
-    let refused = || -> PyResult<PyErr> {
-        let what = format!("queries must be a list of queries, got {}", given.get_type().name()?);
-        Ok(choice(what, "use [query] for a single one"))
-    };
-    let Ok(list) = given.try_iter() else { return Err(refused()?) };
-    let mut queries = Vec::new();
-    for query in list {
-        match query?.cast::<Query>() {
-            Ok(query) => queries.push(query.get().query),
-            Err(_) => return Err(refused()?),
-        }
-    }
-    Ok(queries)
 }

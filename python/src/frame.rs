@@ -3,7 +3,10 @@
 use crate::borrowed::{BorrowedRows, Held, is_on_gpu, on_cpu, on_gpu};
 use crate::errors::choice;
 use crate::host::{Most, positions};
+use crate::key::Key;
+use crate::matrix::{is_matrix, pose_of};
 use crate::pose::{GivenPose, Pose};
+use crate::pose_step::PoseStep;
 use nearmiss::Device;
 use nearmiss::mesh::Positions;
 use nearmiss::scene::{BodyId, DeviceMotion, Motion};
@@ -23,14 +26,17 @@ pub struct Named {
     pub id: BodyId,
     pub name: String,
     pub vertices: usize,
+    pub is_rigid: bool,
 }
 
-/// Owner of positions: its device, its name in messages, and its number of vertices.
+/// Owner of positions: its device, its name in messages, its number of vertices, and whether it takes
+/// poses.
 #[derive(Clone, Copy)]
 struct Of<'a> {
     device: &'a Device,
     what: &'a str,
     most: Most<'a>,
+    is_rigid: bool,
 }
 
 enum Given {
@@ -49,10 +55,10 @@ impl Frame {
     /// A frame of bodies and their given places.
     pub fn of(inputs: Vec<(Named, Bound<'_, PyAny>)>, device: &Device) -> PyResult<Frame> {
         let mut frame = Frame::default();
-        for (Named { id, name, vertices }, input) in inputs {
+        for (Named { id, name, vertices, is_rigid }, input) in inputs {
             let what = format!("positions of body {id}");
-            let given =
-                frame.given(&input, Of { device, what: &what, most: Most::Of { body: &name, vertices } })?;
+            let most = Most::Of { body: &name, vertices };
+            let given = frame.given(&input, Of { device, what: &what, most, is_rigid })?;
             frame.bodies.push((id, given));
         }
         Ok(frame)
@@ -81,7 +87,7 @@ impl Frame {
     }
 
     fn given(&mut self, input: &Bound<'_, PyAny>, of: Of<'_>) -> PyResult<Given> {
-        let (py, Of { device, what, most }) = (input.py(), of);
+        let Of { device, what, most, .. } = of;
         if let Ok(list) = input.cast::<PyList>()
             && list.iter().any(|end| end.is_instance_of::<Pose>())
         {
@@ -90,21 +96,18 @@ impl Frame {
                 "give both ends of a step as a tuple of two",
             ));
         }
+        if let Ok(step) = input.cast::<PoseStep>() {
+            if let Some(step) = step.get().on_host() {
+                return Ok(Given::Known(Motion::PoseStep(step)));
+            }
+            let [a, b] = step.get().ends().map(|end| end.get().given(input.py(), device));
+            return self.step([a?, b?], what);
+        }
         let both = input.cast::<PyTuple>().ok().filter(|both| both.len() == 2);
         if let Some(both) = both {
             let ends = [both.get_item(0)?, both.get_item(1)?];
-            if let [Ok(a), Ok(b)] = [&ends[0], &ends[1]].map(|end| end.cast::<Pose>()) {
-                let [a, b] = [a.get().given(py, device)?, b.get().given(py, device)?];
-                return match (a, b) {
-                    (GivenPose::Known(a), GivenPose::Known(b)) => {
-                        Ok(Given::Known(Motion::PoseStep([a, b].into())))
-                    }
-                    (GivenPose::Borrowed(a, held), GivenPose::Borrowed(b, more)) => {
-                        self.held.extend(held.into_iter().chain(more));
-                        Ok(Given::Known(Motion::OnDevice(DeviceMotion::PoseStep([a, b]))))
-                    }
-                    _ => Err(halves(what)),
-                };
+            if let [Some(a), Some(b)] = [pose(&ends[0], of)?, pose(&ends[1], of)?] {
+                return self.step([a, b], what);
             }
             return match (end(&ends[0], of)?, end(&ends[1], of)?) {
                 (End::Here(a), End::Here(b)) => Ok(Given::Step([a, b])),
@@ -119,8 +122,8 @@ impl Frame {
                 _ => Err(halves(what)),
             };
         }
-        if let Ok(pose) = input.cast::<Pose>() {
-            return Ok(Given::Known(match pose.get().given(py, device)? {
+        if let Some(pose) = pose(input, of)? {
+            return Ok(Given::Known(match pose {
                 GivenPose::Known(pose) => Motion::pose(pose),
                 GivenPose::Borrowed(pose, held) => {
                     self.held.extend(held);
@@ -136,10 +139,38 @@ impl Frame {
             }
         })
     }
+
+    /// The step between two poses, about the origin of the mesh.
+    fn step(&mut self, ends: [GivenPose; 2], what: &str) -> PyResult<Given> {
+        match ends {
+            [GivenPose::Known(a), GivenPose::Known(b)] => Ok(Given::Known(Motion::PoseStep([a, b].into()))),
+            [GivenPose::Borrowed(a, held), GivenPose::Borrowed(b, more)] => {
+                self.held.extend(held.into_iter().chain(more));
+                Ok(Given::Known(Motion::OnDevice(DeviceMotion::PoseStep([a, b]))))
+            }
+            _ => Err(halves(what)),
+        }
+    }
+}
+
+/// A pose, or the pose of a matrix for a rigid body; `None` for other inputs.
+fn pose(object: &Bound<'_, PyAny>, of: Of<'_>) -> PyResult<Option<GivenPose>> {
+    if let Ok(pose) = object.cast::<Pose>() {
+        return pose.get().given(object.py(), of.device).map(Some);
+    }
+    match (of.is_rigid, is_on_gpu(object)) {
+        (false, _) => Ok(None),
+        (true, true) => Err(choice(
+            format!("{} are an array of a GPU, and the body is rigid", of.what),
+            "give Pose(rotation, translation) of two arrays of the GPU",
+        )),
+        (true, false) if is_matrix(object) => pose_of(object).map(|pose| Some(GivenPose::Known(pose))),
+        (true, false) => Ok(None),
+    }
 }
 
 /// One end: read where it lies if the device reaches it there, else copied.
-fn end(object: &Bound<'_, PyAny>, Of { device, what, most }: Of<'_>) -> PyResult<End> {
+fn end(object: &Bound<'_, PyAny>, Of { device, what, most, .. }: Of<'_>) -> PyResult<End> {
     if is_on_gpu(object) {
         return on_gpu(object, device, (3, what)).map(End::Borrowed);
     }
@@ -155,29 +186,20 @@ fn halves(what: &str) -> PyErr {
     choice(format!("{what} have one end on the GPU and one on the host"), "give both ends in one memory")
 }
 
-/// The items of a mapping from body numbers.
-pub fn numbered<'py>(inputs: &Bound<'py, PyAny>) -> PyResult<Vec<(usize, Bound<'py, PyAny>)>> {
+/// The items of a mapping from bodies.
+pub fn keyed<'py>(inputs: &Bound<'py, PyAny>) -> PyResult<Vec<(Key, Bound<'py, PyAny>)>> {
     let mapping = inputs.cast::<PyMapping>().map_err(|_| no_mapping(inputs))?;
     let mut all = Vec::new();
     for item in mapping.items()? {
         let (body, input) = item.extract::<(Bound<'_, PyAny>, Bound<'_, PyAny>)>()?;
-        let number = body.extract().or_else(|_| {
-            let what = format!("keys of inputs must be body numbers, got {}", body.repr()?);
-            Err(choice(what, "use a number that add returned"))
-        })?;
-        all.push((number, input));
+        all.push((Key::of(&body, "keys of inputs")?, input));
     }
     Ok(all)
 }
 
 fn no_mapping(inputs: &Bound<'_, PyAny>) -> PyErr {
     choice(
-        format!("inputs must be a mapping from body numbers, got {}", inputs.get_type()),
+        format!("inputs must be a mapping from body numbers or names, got {}", inputs.get_type()),
         "use a dictionary as {0: vertices}",
     )
-}
-
-/// The body that was found by its number.
-pub fn known<T>(index: usize, found: Option<T>) -> PyResult<T> {
-    found.ok_or_else(|| choice(format!("body {index} is not in the scene"), "use a number that add returned"))
 }

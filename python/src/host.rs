@@ -175,6 +175,23 @@ pub fn faces(object: &Bound<'_, PyAny>, name: &str, vertices: usize) -> PyResult
     Ok(faces)
 }
 
+/// Rows of `N` numbers in double precision, copied.
+pub fn doubles<const N: usize>(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<[f64; N]>> {
+    let array = asarray(object)?;
+    are_numbers(&array, what)?;
+    let shape = array.shape();
+    if shape.len() != 2 || shape[1] != N {
+        return Err(choice(
+            format!("{what} of shape {shape:?}"),
+            format!("give rows of {N}: shape (n, {N})"),
+        ));
+    }
+    require::<[f64; N]>(2 * shape[0], what)?;
+    let wide = array.call_method1("astype", ("=f8",))?.cast_into::<PyArray2<f64>>()?.readonly();
+    let row = |row: numpy::ndarray::ArrayView1<'_, f64>| std::array::from_fn(|k| row[k]);
+    Ok(wide.as_array().rows().into_iter().map(row).collect())
+}
+
 /// A row of numbers in double precision.
 pub fn row<const N: usize>(object: &Bound<'_, PyAny>, what: &str) -> PyResult<[f64; N]> {
     let array = asarray(object)?;

@@ -15,8 +15,12 @@ mod errors;
 mod frame;
 mod geometry;
 mod host;
+mod key;
+mod matrix;
 mod on_device;
 mod pose;
+mod pose_step;
+mod poses;
 mod query;
 mod research;
 mod rows;
@@ -45,6 +49,8 @@ mod _native {
     use super::on_device::{DeviceAnswer, DeviceArray};
     #[pymodule_export]
     use super::pose::Pose;
+    #[pymodule_export]
+    use super::pose_step::PoseStep;
     #[pymodule_export]
     use super::query::{Continuous, Discrete, Distance, Earliest, Near, Query};
     #[pymodule_export]

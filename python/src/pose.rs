@@ -2,7 +2,8 @@
 
 use crate::borrowed::{Held, is_on_gpu, on_gpu};
 use crate::errors::{choice, raised};
-use crate::host::{points, row};
+use crate::host::{points, row, rows};
+use crate::matrix::pose_of;
 use crate::query::{Remade, remade};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::scene::{self, BodyKind, DevicePose, Motion};
@@ -19,6 +20,8 @@ use pyo3::types::{PyDict, PyTuple};
 /// A vertex v is placed at R v + t in float64, also of a mesh in float32. Both may be arrays of a
 /// GPU, of 4 and 3 float32 or float64 numbers. Raises InputError for numbers that are no pose, and
 /// InvalidArgumentError for other shapes; poses on a GPU are checked by the next query.
+///
+/// A (4, 4) array is taken wherever a Pose is: see `from_matrix`.
 #[pyclass(module = "nearmiss", frozen)]
 pub struct Pose {
     rotation: Py<PyAny>,
@@ -58,7 +61,7 @@ impl Pose {
                 rotation: turned.unwrap_or(here.rotation),
                 translation: moved.unwrap_or(here.translation),
             };
-            checked(&pose).map_err(raised)?;
+            checked(&Motion::pose(pose)).map_err(raised)?;
             Some(pose)
         };
         Ok(Pose {
@@ -66,6 +69,30 @@ impl Pose {
             translation: or(translation, &here.translation)?,
             known,
         })
+    }
+
+    /// Return the pose of a matrix, (4, 4) numbers, or (3, 4) without the last row.
+    ///
+    /// The translation is in the last column. The last row is 0, 0, 0, 1. Columns of the rotation may
+    /// be off unit length, and scalar products of two of them off 0, by up to 1.2e-4. The nearest
+    /// rotation is taken. Raises InputError for a number that is not finite, another last row, scale,
+    /// shear and a mirror image. The message names the number.
+    #[staticmethod]
+    fn from_matrix(py: Python<'_>, matrix: &Bound<'_, PyAny>) -> PyResult<Pose> {
+        let pose = pose_of(matrix)?;
+        checked(&Motion::pose(pose)).map_err(raised)?;
+        Pose::known(py, pose)
+    }
+
+    /// (4, 4) float64: the matrix of the pose, a copy.
+    ///
+    /// Raises InvalidArgumentError for a pose on a GPU.
+    #[getter]
+    fn matrix<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        match &self.known {
+            Some(pose) => Ok(rows(py, &pose.matrix()).into_any()),
+            None => Err(choice("the pose is on a GPU", "copy rotation and translation to the host")),
+        }
     }
 
     /// Rotation, as it was given.
@@ -116,10 +143,9 @@ impl Pose {
     }
 }
 
-/// Whether a body can be there.
-fn checked(pose: &scene::Pose) -> Result<(), Error> {
-    Body::rigid(Mesh::new("a body", Positions::F64(vec![[0.0; 3]; 3]), vec![[0, 1, 2]])?)
-        .check(&Motion::pose(*pose))
+/// Whether a body can be there, or move so.
+pub fn checked(motion: &Motion<'_>) -> Result<(), Error> {
+    Body::rigid(Mesh::new("a body", Positions::F64(vec![[0.0; 3]; 3]), vec![[0, 1, 2]])?).check(motion)
 }
 
 /// A pose as a frame takes it.
@@ -129,7 +155,12 @@ pub enum GivenPose {
 }
 
 impl Pose {
-    fn known(py: Python<'_>, pose: scene::Pose) -> PyResult<Pose> {
+    /// The pose on the host.
+    pub fn on_host(&self) -> Option<scene::Pose> {
+        self.known
+    }
+
+    pub fn known(py: Python<'_>, pose: scene::Pose) -> PyResult<Pose> {
         let tuple = |numbers: &[f64]| PyTuple::new(py, numbers).map(|tuple| tuple.into_any().unbind());
         let (rotation, translation) = (tuple(&pose.rotation)?, tuple(&pose.translation)?);
         Ok(Pose { rotation, translation, known: Some(pose) })

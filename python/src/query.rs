@@ -229,14 +229,15 @@ macro_rules! in_motion {
 in_motion! {
     /// Query for all contacts of a step, with certified times. Answer: Contacts.
     ///
-    /// Vertices move in straight lines from t = 0 to t = 1. Features with a common vertex are left
-    /// out.
+    /// From t = 0 to t = 1 vertices move in straight lines, and rigid bodies turn: see PoseStep.
+    /// Features with a common vertex are left out.
     Continuous by continuous
 }
 in_motion! {
     /// Query for the first contact of a step: how long a step is safe. Answer: FirstContact.
     ///
-    /// Vertices move in straight lines from t = 0 to t = 1. No contact is before the returned time.
+    /// From t = 0 to t = 1 vertices move in straight lines, and rigid bodies turn: see PoseStep. No
+    /// contact is before the returned time.
     Earliest by earliest
 }
 
@@ -268,4 +269,21 @@ impl Distance {
     fn new() -> PyResult<PyClassInitializer<Distance>> {
         Ok(PyClassInitializer::from(Query { query: nearmiss::Query::distance() }).add_subclass(Distance))
     }
+}
+
+/// The queries of a list.
+pub fn queries_of(given: &Bound<'_, PyAny>) -> PyResult<Vec<nearmiss::Query>> {
+    let refused = || -> PyResult<PyErr> {
+        let what = format!("queries must be a list of queries, got {}", given.get_type().name()?);
+        Ok(choice(what, "use [query] for a single one"))
+    };
+    let Ok(list) = given.try_iter() else { return Err(refused()?) };
+    let mut queries = Vec::new();
+    for query in list {
+        match query?.cast::<Query>() {
+            Ok(query) => queries.push(query.get().query),
+            Err(_) => return Err(refused()?),
+        }
+    }
+    Ok(queries)
 }

@@ -41,6 +41,16 @@ fn indices(bodies: [BodyId; 2]) -> [u32; 2] {
     bodies.map(|body| body.index() as u32)
 }
 
+/// Names of bodies, in the shape of these.
+fn names<'py>(answer: &Bound<'py, Answer>, bodies: Bound<'py, PyAny>) -> Column<'py> {
+    let (py, own) = (answer.py(), answer.get());
+    own.columns.get(py, "names", || {
+        // Objects: a name is in memory once, however long it is.
+        let all = py.import("numpy")?.call_method1("array", (&own.names[..], "O"))?;
+        all.get_item(bodies)
+    })
+}
+
 /// Answer of Discrete: triangles that share a point, a row a pair.
 ///
 /// Rows ascend by the first triangle and its body, then by the second.
@@ -53,6 +63,12 @@ impl TrianglePairs {
     #[getter]
     fn bodies<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
         field::<_, u32, 2>(slf.as_super(), "bodies", Rows::pairs, |pair| numbers_of(&pair.bodies))
+    }
+
+    /// (k, 2) objects: names of both bodies.
+    #[getter]
+    fn names<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
+        names(slf.as_super(), Self::bodies(slf)?)
     }
 
     /// (k, 2) uint32: both triangles, by their indices in their bodies.
@@ -92,6 +108,12 @@ impl Contacts {
     #[getter]
     fn bodies<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
         field::<_, u32, 2>(slf.as_super(), "bodies", Rows::contacts, |contact| numbers_of(&contact.bodies))
+    }
+
+    /// (k, 2) objects: name of the body of feature a, and of that of feature b.
+    #[getter]
+    fn names<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
+        names(slf.as_super(), Self::bodies(slf)?)
     }
 
     /// (k,) uint32: the vertex, or the first edge, by its index in its body.
@@ -217,6 +239,12 @@ impl NearPairs {
         field::<_, u32, 2>(slf.as_super(), "bodies", Rows::near, |pair| numbers_of(&pair.bodies))
     }
 
+    /// (k, 2) objects: name of the body of feature a, and of that of feature b.
+    #[getter]
+    fn names<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
+        names(slf.as_super(), Self::bodies(slf)?)
+    }
+
     /// (k,) uint32: the vertex, or the first edge, by its index in its body.
     #[getter]
     fn feature_a<'py>(slf: &Bound<'py, Self>) -> Column<'py> {
@@ -313,6 +341,12 @@ impl NearestTriangles {
     #[getter]
     fn bodies<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
         Self::value(slf, "bodies", |at| PyArray1::from_slice(slf.py(), &indices(at.bodies)))
+    }
+
+    /// (2,) objects: names of both bodies.
+    #[getter]
+    fn names<'py>(slf: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        Self::bodies(slf)?.map(|bodies| names(slf.as_super(), bodies)).transpose()
     }
 
     /// (2,) uint32: both triangles, by their indices in their bodies.

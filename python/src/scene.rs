@@ -1,8 +1,10 @@
 //! Bodies, and scenes of them.
 
 use crate::errors::{choice, integer, one_of, optional, raised};
-use crate::frame::known;
 use crate::host::{Most, faces, points, positions, rows};
+use crate::key::{Key, bodies, body_of};
+use crate::matrix::pose_of;
+use crate::pose::Pose;
 use crate::query::{Remade, remade};
 use nearmiss::Mesh;
 use nearmiss::scene::{BodyKind, CollisionFilter};
@@ -21,7 +23,8 @@ use pyo3::types::{PyDict, PyTuple};
 /// - `environment`: bodies of different environments never meet; None is in all of them.
 /// - `group`, `mask`: 32 bits each. Two bodies meet if each is in a group of the other's mask. ~1
 ///   is all bits except the lowest.
-/// - `name`: name of the body in messages.
+/// - `name`: name of the body in messages; it may be used in place of its number.
+/// - `pose`: of a rigid body, where it begins: a Pose or a (4, 4) array. Default: where its mesh is.
 ///
 /// Raises InputError for vertices that are not finite and for indices without a vertex.
 #[pyclass(module = "nearmiss", frozen)]
@@ -35,10 +38,10 @@ impl Body {
     #[pyo3(
         signature = (
             vertices, faces, *, kind = "deformable", self_collision = None, environment = Some(0),
-            group = u32::MAX, mask = u32::MAX, name = "a mesh",
+            group = u32::MAX, mask = u32::MAX, name = "a mesh", pose = None,
         ),
         text_signature = "(vertices, faces, *, kind='deformable', self_collision=None, environment=0, \
-            group=0xFFFFFFFF, mask=0xFFFFFFFF, name='a mesh')"
+            group=0xFFFFFFFF, mask=0xFFFFFFFF, name='a mesh', pose=None)"
     )]
     #[allow(clippy::too_many_arguments, reason = "they are named")]
     fn new(
@@ -51,6 +54,7 @@ impl Body {
         #[pyo3(from_py_with = group_of)] group: u32,
         #[pyo3(from_py_with = mask_of)] mask: u32,
         name: &str,
+        pose: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Body> {
         let make = match kind {
             "deformable" => nearmiss::Body::deformable,
@@ -68,14 +72,34 @@ impl Body {
         let on_itself = self_collision;
         let filter = CollisionFilter { environment, group, mask, self_collision: on_itself };
         let made = py.detach(|| Mesh::new(name, given, triangles).map(|mesh| make(mesh).with_filter(filter)));
-        let body = made.and_then(|body| body.check_filter().map(|()| body));
-        Ok(Body { body: body.map_err(raised)? })
+        let body = made.and_then(|body| body.check_filter().map(|()| body)).map_err(raised)?;
+        let Some(pose) = pose else { return Ok(Body { body }) };
+        if body.kind() != BodyKind::Rigid {
+            return Err(choice(
+                format!("pose of {name}, which is {kind}"),
+                "use kind=\"rigid\", or leave pose out",
+            ));
+        }
+        let at = match pose.cast::<Pose>() {
+            Ok(pose) => pose.get().on_host().ok_or_else(|| {
+                choice(format!("pose of {name} is on a GPU"), "copy it to the host, or give it to update")
+            })?,
+            Err(_) => pose_of(&pose)?,
+        };
+        Ok(Body { body: body.at(at).map_err(raised)? })
     }
 
     /// Name of the body in messages.
     #[getter]
     fn name(&self) -> &str {
         self.body.name()
+    }
+
+    /// Pose at which a rigid body begins; None of other bodies.
+    #[getter]
+    fn pose(&self, py: Python<'_>) -> PyResult<Option<Pose>> {
+        let is_rigid = self.body.kind() == BodyKind::Rigid;
+        is_rigid.then(|| Pose::known(py, self.body.poses()[0])).transpose()
     }
 
     /// Number of vertices.
@@ -106,6 +130,7 @@ impl Body {
         named.set_item("group", meets.group)?;
         named.set_item("mask", meets.mask)?;
         named.set_item("name", own.name())?;
+        named.set_item("pose", body.getattr("pose")?)?;
         remade(body.get_type(), mesh, named)
     }
 
@@ -184,12 +209,24 @@ impl Scene {
         Ok(self.scene.add(body.body.clone()).index())
     }
 
-    /// Remove the body with that number. The next body that is added may take its number.
-    fn remove(&mut self, body: usize) -> PyResult<()> {
+    /// Remove a body, by number or name. The next body that is added may take its number.
+    fn remove(&mut self, #[pyo3(from_py_with = body_of)] body: Key) -> PyResult<()> {
         self.is_free("remove a body from")?;
-        let id = known(body, self.scene.id(body))?;
-        self.scene.remove(id);
+        for id in bodies(&self.scene, &[body]).map_err(raised)? {
+            self.scene.remove(id);
+        }
         Ok(())
+    }
+
+    /// Return the number of the one body with that name: scene[name] is the same.
+    ///
+    /// Raises InvalidArgumentError if no body has the name, or several have; it lists them.
+    fn id(&self, name: &str) -> PyResult<usize> {
+        self.scene.id_of(name).map(|id| id.index()).map_err(raised)
+    }
+
+    fn __getitem__(&self, name: &str) -> PyResult<usize> {
+        self.id(name)
     }
 
     /// Numbers of all bodies, ascending.
@@ -205,4 +242,18 @@ impl Scene {
     fn __repr__(&self) -> String {
         format!("<nearmiss.Scene of {}>", counted(self.__len__() as u64, "body", "bodies"))
     }
+}
+
+/// The scene of a detector.
+pub fn scene_of(given: &Bound<'_, PyAny>) -> PyResult<nearmiss::Scene> {
+    if let Ok(body) = given.cast::<Body>() {
+        return Ok(nearmiss::Scene::from(body.get().body.clone()));
+    }
+    if let Ok(scene) = given.cast::<Scene>() {
+        return Ok(scene.borrow().scene.clone());
+    }
+    Err(choice(
+        format!("scene must be a Scene or a Body, got {}", given.get_type().name()?),
+        "use Detector(Scene(*bodies))",
+    ))
 }

@@ -5,10 +5,12 @@ use crate::asked::{Asked, Does};
 use crate::borrowed::Held;
 use crate::detector::Detector;
 use crate::errors::{choice, raised};
-use crate::frame::{Frame, Named, known, numbered};
+use crate::frame::{Frame, Named, keyed};
+use crate::key::{Key, bodies};
+use crate::pose::{Ends, Pose};
 use crate::watch::watched;
 use nearmiss::Error;
-use nearmiss::scene::BodyId;
+use nearmiss::scene::{BodyId, BodyKind};
 use pyo3::prelude::*;
 use serde::Serialize;
 use std::sync::{MutexGuard, PoisonError};
@@ -49,14 +51,14 @@ impl Detector {
         held: Vec<Held>,
         call: impl FnOnce(&mut nearmiss::Detector) -> Result<nearmiss::Contacts, Error> + Send,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let (answer, stamp, unread) = self.work(py, |one| {
+        let (answer, stamp, names, unread) = self.work(py, |one| {
             one.count(does);
             let answer = call(&mut one.detector);
             let unread = one.read(held, answer.is_ok());
-            (answer, one.stamp(), unread)
+            (answer, one.stamp(), one.names(), unread)
         })?;
         drop(unread);
-        typed(py, answer.map_err(raised)?, stamp)
+        typed(py, answer.map_err(raised)?, stamp, names)
     }
 
     /// The answer to a query, of the bodies where they are.
@@ -113,25 +115,50 @@ impl Detector {
 
     /// The motions of bodies, as Python gives them.
     pub fn frame_of(&self, py: Python<'_>, inputs: &Bound<'_, PyAny>) -> PyResult<Frame> {
-        let (numbers, places): (Vec<_>, Vec<_>) = numbered(inputs)?.into_iter().unzip();
-        let bodies = self.bodies_of(py, &numbers)?;
-        Frame::of(bodies.into_iter().zip(places).collect(), &self.device.get().device)
-    }
-
-    /// The bodies with these numbers.
-    fn bodies_of(&self, py: Python<'_>, numbers: &[usize]) -> PyResult<Vec<Named>> {
-        let found = self.look(py, |detector| {
+        let (keys, places): (Vec<_>, Vec<_>) = keyed(inputs)?.into_iter().unzip();
+        let named = self.look(py, |detector| {
             let scene = detector.scene();
-            let named = |id| scene.get(id).map(|body| (id, body.name().to_owned(), body.vertex_count()));
-            numbers.iter().map(|&number| scene.id(number).and_then(named)).collect::<Vec<_>>()
+            let named = |id| {
+                let body = scene.get(id)?;
+                let (name, is_rigid) = (body.name().to_owned(), body.kind() == BodyKind::Rigid);
+                Some(Named { id, name, vertices: body.vertex_count(), is_rigid })
+            };
+            Ok::<_, Error>(bodies(scene, &keys)?.into_iter().filter_map(named).collect::<Vec<_>>())
         })?;
-        let named =
-            |(&number, found)| known(number, found).map(|(id, name, vertices)| Named { id, name, vertices });
-        numbers.iter().zip(found).map(named).collect()
+        Frame::of(named.map_err(raised)?.into_iter().zip(places).collect(), &self.device.get().device)
     }
 
-    pub fn body(&self, py: Python<'_>, number: usize) -> PyResult<BodyId> {
-        known(number, self.look(py, |detector| detector.scene().id(number))?)
+    /// The body of a key.
+    pub fn body(&self, py: Python<'_>, key: Key) -> PyResult<BodyId> {
+        let found = self.look(py, |detector| bodies(detector.scene(), &[key]))?;
+        Ok(found.map_err(raised)?.swap_remove(0))
+    }
+
+    /// The place of a body at both ends of its step.
+    pub fn ends_of(&self, py: Python<'_>, body: Key) -> PyResult<Ends> {
+        let id = self.body(py, body)?;
+        self.run(py, Does::Reads, |detector| {
+            detector.download_positions()?;
+            let gone = || Error::Bug { what: format!("body {id} is gone") };
+            detector.scene().get(id).map(Ends::of).ok_or_else(gone)
+        })
+    }
+
+    /// The poses of a rigid body at both ends of its step.
+    pub fn poses_of(&self, py: Python<'_>, body: Key) -> PyResult<(Pose, Pose)> {
+        let id = self.body(py, body)?;
+        let [start, end] = self.run(py, Does::Reads, |detector| {
+            if let Some(body) = detector.scene().get(id).filter(|body| body.kind() != BodyKind::Rigid) {
+                return Err(Error::InvalidArgument {
+                    what: format!("body {id}, {}, is not rigid and has no pose", body.name()),
+                    advice: "use download_positions for its vertices".into(),
+                });
+            }
+            detector.download_positions()?;
+            let gone = || Error::Bug { what: format!("body {id} is gone") };
+            detector.scene().get(id).map(nearmiss::Body::poses).ok_or_else(gone)
+        })?;
+        Ok((Pose::known(py, start)?, Pose::known(py, end)?))
     }
 
     /// Does something with the answer that was on the device after so many calls, if it still is there.

@@ -215,6 +215,29 @@ def test_poses_of_tensors(stream):
     assert detector.step({1: pose}, nm.Discrete()).hash == wanted.hash and len(wanted) > 5
 
 
+def test_rows_of_poses_of_tensors(stream):
+    vertices, faces = soup(80, 4, 0.5)
+    scene = nm.Scene(*(nm.Body(vertices, faces, kind="rigid", name=f"body {k}") for k in range(3)))
+    random = np.random.default_rng(3)
+    turns = random.standard_normal((2, 3, 4))
+    turns /= np.linalg.norm(turns, axis=2, keepdims=True)
+    moves = 0.3 * random.standard_normal((2, 3, 3))
+    by_host, detector = nm.Detector(scene, device=nm.Device("cpu")), nm.Detector(scene, device=nm.Device(stream=stream))
+    here = lambda array: torch.from_numpy(array).cuda()
+    ids = [2, "body 0", 1]
+    by_host.update_poses(ids, moves[0], turns[0], end_positions=moves[1], end_quaternions=turns[1])
+    detector.update_poses(ids, here(moves[0]), here(turns[0]), end_positions=here(moves[1]), end_quaternions=here(turns[1]))
+    for query in [nm.Discrete(), nm.Continuous(), nm.Near(0.05)]:
+        assert detector.query(query).hash == by_host.query(query).hash
+    assert detector.poses(0) == by_host.poses(0)
+    with pytest.raises(nm.InvalidArgumentError, match="positions and quaternions are in different memories"):
+        detector.update_poses(ids, here(moves[0]), turns[0])
+    with pytest.raises(nm.InvalidArgumentError, match="poses on a GPU turn about the origin of the mesh"):
+        nm.PoseStep(*[nm.Pose(here(turns[0][k]), here(moves[0][k])) for k in (0, 1)], pivot=(0, 0, 1))
+    with pytest.raises(nm.InvalidArgumentError, match="the body is rigid; give Pose"):
+        detector.update({0: here(np.eye(4))})
+
+
 def test_a_pose_is_one_row(stream):
     vertices, faces = soup(10, 4, 0.5)
     scene = nm.Scene(nm.Body(vertices, faces, kind="fixed"), nm.Body(vertices, faces, kind="rigid"))

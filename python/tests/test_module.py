@@ -14,6 +14,8 @@ from shapes import sheet
 
 import nearmiss as nm
 
+HERE = "Pose(rotation=[0.0, 0.0, 0.0, 1.0], translation=[0.0, 0.0, 0.0])"
+THERE = "Pose(rotation=[0.0, 0.0, 0.6, 0.8], translation=[1.0, 2.0, 3.5])"
 CHOICES = [
     "Discrete()",
     "Discrete(adjacent=True)",
@@ -30,6 +32,11 @@ CHOICES = [
     "Distance()",
     "Pose(rotation=[0.0, 0.0, 0.0, 1.0], translation=[0.0, 0.0, 0.0])",
     "Pose(rotation=[0.0, 0.0, 1.0, 0.0], translation=[1.0, 2.0, 3.5])",
+    f"PoseStep({HERE}, {THERE})",
+    f"PoseStep({HERE}, {THERE}, pivot=[0.0, 0.5, 1.0])",
+    f"PoseStep({HERE}, {THERE}, straight=True)",
+    f"PoseStep.turning({HERE}, [0.0, 0.0, 6.0], [0.0, 0.0, 0.0])",
+    f"PoseStep.turning({HERE}, [0.1, 0.0, -0.3], [1.0, 0.3, 0.0], pivot=[0.7, 0.1, 0.0])",
 ]
 
 
@@ -61,7 +68,8 @@ def test_what_differs_is_not_equal():
 def test_a_body_is_made_again(kind):
     vertices, faces = sheet(4, lambda x, y: np.sin(9 * x))
     own = None if kind == "fixed" else True
-    choices = dict(kind=kind, self_collision=own, environment=3, group=5, mask=~2, name="a rag")
+    there = made_of(THERE) if kind == "rigid" else None
+    choices = dict(kind=kind, self_collision=own, environment=3, group=5, mask=~2, name="a rag", pose=there)
     for points in [vertices, vertices.astype(float) / 3]:
         body = nm.Body(points, faces, **choices)
         for other in [copy.deepcopy(body), pickle.loads(pickle.dumps(body))]:

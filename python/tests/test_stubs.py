@@ -35,8 +35,13 @@ def members(tree):
 def thing(name, module):
     """The part of a module with that name."""
     for part in name.split("."):
-        module = vars(module)[part]
+        module = function_of(vars(module)[part])
     return module
+
+
+def function_of(part):
+    """The function of a static method; other parts as they are."""
+    return part.__func__ if isinstance(part, staticmethod) else part
 
 
 def parameters(node):
@@ -268,7 +273,7 @@ def docstrings():
             if inspect.isclass(own):
                 for member, part in vars(own).items():
                     if not member.startswith("_") and not isinstance(part, int):
-                        yield f"{name}.{member}", inspect.getdoc(part)
+                        yield f"{name}.{member}", inspect.getdoc(function_of(part))
 
 
 def badly_worded(name, text):

@@ -12,6 +12,11 @@ near: nm.NearPairs = nm.near(vertices, faces, 0.1)
 found: nm.Contacts = nm.contacts(vertices, vertices, faces)
 detector = nm.Detector(nm.Scene(nm.Body(vertices, faces, kind="rigid")), device=nm.Device("cpu"))
 detector.update({0: (nm.Pose(), nm.Pose(translation=(0, 0, 1)))})
+moves: dict[str, nm.PoseStep] = {"a mesh": nm.PoseStep(np.eye(4), nm.Pose(), pivot=(0, 0, 1))}
+detector.update(moves)
+detector.update_poses([0], np.zeros((1, 3)), np.eye(4)[3:])
+start, end = detector.poses("a mesh")
+matrix: NDArray[np.float64] = detector.pose(0).matrix
 first: nm.FirstContact = detector.earliest(min_separation=1e-3)
 triangles: nm.TrianglePairs = detector.query(nm.Discrete())
 nearest: nm.NearestTriangles = detector.step({0: nm.Pose()}, nm.Distance())

@@ -8,8 +8,12 @@ __version__: str
 
 Array = Any
 """What numpy can read, or an array of a GPU with DLPack or __cuda_array_interface__."""
-Motion = Union[Array, Tuple[Array, Array], "Pose", Tuple["Pose", "Pose"]]
-"""Positions or a pose, or a tuple of two for the start and the end of a step."""
+Motion = Union[Array, Tuple[Array, Array], "Pose", Tuple["Pose", "Pose"], "PoseStep"]
+"""Positions or a pose, or a tuple of two for the start and the end of a step; a step of a rigid body."""
+Key = Union[int, str]
+"""Number or name of a body."""
+Motions = Union[Mapping[int, Motion], Mapping[str, Motion], Mapping[Key, Motion]]
+"""Motions of bodies, by number or by name."""
 
 _A = TypeVar("_A", bound="Answer", covariant=True)
 _Q = TypeVar("_Q", bound="Query[Any]")
@@ -120,9 +124,28 @@ class Pose:
     A vertex v is placed at R v + t in float64, also of a mesh in float32. Both may be arrays of a
     GPU, of 4 and 3 float32 or float64 numbers. Raises InputError for numbers that are no pose, and
     InvalidArgumentError for other shapes; poses on a GPU are checked by the next query.
+
+    A (4, 4) array is taken wherever a Pose is: see `from_matrix`.
     """
 
     def __new__(cls, rotation: Array = None, translation: Array = None) -> Pose: ...
+
+    @staticmethod
+    def from_matrix(matrix: Array) -> Pose:
+        """Return the pose of a matrix, (4, 4) numbers, or (3, 4) without the last row.
+
+        The translation is in the last column. The last row is 0, 0, 0, 1. Columns of the rotation may
+        be off unit length, and scalar products of two of them off 0, by up to 1.2e-4. The nearest
+        rotation is taken. Raises InputError for a number that is not finite, another last row, scale,
+        shear and a mirror image. The message names the number.
+        """
+
+    @property
+    def matrix(self) -> NDArray[np.float64]:
+        """(4, 4) float64: the matrix of the pose, a copy.
+
+        Raises InvalidArgumentError for a pose on a GPU.
+        """
 
     @property
     def rotation(self) -> Array:
@@ -131,6 +154,69 @@ class Pose:
     @property
     def translation(self) -> Array:
         """Translation, as it was given."""
+
+class PoseStep:
+    """Step of a rigid body from one pose to another, and the path between them.
+
+    The body turns at a constant rate about a pivot, which moves in a straight line. It turns by the
+    shorter arc; `turning` makes other turns. At exactly 180 degrees the axis is that with a positive
+    first coordinate; if this is 0, a positive second or third one.
+
+    - `start`, `end`: a Pose or a (4, 4) array each. Both may be on a GPU.
+    - `pivot`: the point about which it turns, in the frame of the mesh: a centre of mass, a hinge.
+    - `straight`: vertices go in straight lines instead; between the poses the body is not rigid.
+
+    A tuple of two poses is the step about the origin of the mesh. Poses on a GPU always turn so.
+    Raises InputError for numbers that are no step, InvalidArgumentError for a pivot of a straight one.
+    """
+
+    def __new__(
+        cls,
+        start: Union[Pose, Array],
+        end: Union[Pose, Array],
+        *,
+        pivot: Array = (0, 0, 0),
+        straight: bool = False,
+    ) -> PoseStep: ...
+
+    @staticmethod
+    def turning(
+        start: Union[Pose, Array],
+        turn: Array,
+        travel: Array = (0, 0, 0),
+        *,
+        pivot: Array = (0, 0, 0),
+    ) -> PoseStep:
+        """Return the step that turns by a rotation vector while its pivot moves by `travel`.
+
+        Turns of more than 180 degrees need it: two poses cannot say them.
+
+        - `start`: a Pose or a (4, 4) array.
+        - `turn`: 3 numbers in the axes of the scene, in radians: angular velocity times the length of
+          the step. At most a whole turn, 2 pi.
+        - `travel`: how far the pivot moves.
+        - `pivot`: the point about which it turns, in the frame of the mesh.
+        """
+
+    @property
+    def start(self) -> Pose:
+        """Pose at the start."""
+
+    @property
+    def end(self) -> Pose:
+        """Pose at the end."""
+
+    @property
+    def pivot(self) -> tuple[float, float, float]:
+        """Point about which it turns, in the frame of the mesh; zeros of a straight step."""
+
+    @property
+    def turn(self) -> tuple[float, float, float] | None:
+        """Rotation vector that was given to `turning`; None of other steps."""
+
+    @property
+    def straight(self) -> bool:
+        """Whether vertices go in straight lines."""
 
 class Body:
     """Mesh that takes part in a scene: its way to move, and the bodies that it may meet.
@@ -144,7 +230,8 @@ class Body:
     - `environment`: bodies of different environments never meet; None is in all of them.
     - `group`, `mask`: 32 bits each. Two bodies meet if each is in a group of the other's mask. ~1
       is all bits except the lowest.
-    - `name`: name of the body in messages.
+    - `name`: name of the body in messages; it may be used in place of its number.
+    - `pose`: of a rigid body, where it begins: a Pose or a (4, 4) array. Default: where its mesh is.
 
     Raises InputError for vertices that are not finite and for indices without a vertex.
     """
@@ -160,11 +247,16 @@ class Body:
         group: int = 0xFFFFFFFF,
         mask: int = 0xFFFFFFFF,
         name: str = "a mesh",
+        pose: Union[Pose, Array, None] = None,
     ) -> Body: ...
 
     @property
     def name(self) -> str:
         """Name of the body in messages."""
+
+    @property
+    def pose(self) -> Pose | None:
+        """Pose at which a rigid body begins; None of other bodies."""
 
     @property
     def vertex_count(self) -> int:
@@ -187,8 +279,16 @@ class Scene:
     def add(self, body: Body) -> int:
         """Add a body, and return its number."""
 
-    def remove(self, body: int) -> None:
-        """Remove the body with that number. The next body that is added may take its number."""
+    def remove(self, body: Key) -> None:
+        """Remove a body, by number or name. The next body that is added may take its number."""
+
+    def id(self, name: str) -> int:
+        """Return the number of the one body with that name: scene[name] is the same.
+
+        Raises InvalidArgumentError if no body has the name, or several have; it lists them.
+        """
+
+    def __getitem__(self, name: str) -> int: ...
 
     @property
     def bodies(self) -> list[int]:
@@ -214,8 +314,8 @@ class Discrete(Query["TrianglePairs"]):
 class Continuous(Query["Contacts"]):
     """Query for all contacts of a step, with certified times. Answer: Contacts.
 
-    Vertices move in straight lines from t = 0 to t = 1. Features with a common vertex are left
-    out.
+    From t = 0 to t = 1 vertices move in straight lines, and rigid bodies turn: see PoseStep.
+    Features with a common vertex are left out.
 
     - `tolerance`: accuracy of times, as a length, at least 0. Default: of two bodies the
       smaller 1e-4 of the mean edge. A smaller one takes longer. None loses a contact.
@@ -238,7 +338,8 @@ class Continuous(Query["Contacts"]):
 class Earliest(Query["FirstContact"]):
     """Query for the first contact of a step: how long a step is safe. Answer: FirstContact.
 
-    Vertices move in straight lines from t = 0 to t = 1. No contact is before the returned time.
+    From t = 0 to t = 1 vertices move in straight lines, and rigid bodies turn: see PoseStep. No
+    contact is before the returned time.
 
     - `tolerance`: accuracy of times, as a length, at least 0. Default: of two bodies the
       smaller 1e-4 of the mean edge. A smaller one takes longer. None loses a contact.
@@ -313,6 +414,10 @@ class TrianglePairs(Answer):
         """(k, 2) uint32: bodies of both triangles, the smaller number first."""
 
     @property
+    def names(self) -> NDArray[np.object_]:
+        """(k, 2) objects: names of both bodies."""
+
+    @property
     def triangles(self) -> NDArray[np.uint32]:
         """(k, 2) uint32: both triangles, by their indices in their bodies."""
 
@@ -337,6 +442,10 @@ class Contacts(Answer):
     @property
     def bodies(self) -> NDArray[np.uint32]:
         """(k, 2) uint32: body of feature a, body of feature b."""
+
+    @property
+    def names(self) -> NDArray[np.object_]:
+        """(k, 2) objects: name of the body of feature a, and of that of feature b."""
 
     @property
     def feature_a(self) -> NDArray[np.uint32]:
@@ -417,6 +526,10 @@ class NearPairs(Answer):
         """(k, 2) uint32: body of feature a, body of feature b."""
 
     @property
+    def names(self) -> NDArray[np.object_]:
+        """(k, 2) objects: name of the body of feature a, and of that of feature b."""
+
+    @property
     def feature_a(self) -> NDArray[np.uint32]:
         """(k,) uint32: the vertex, or the first edge, by its index in its body."""
 
@@ -469,6 +582,10 @@ class NearestTriangles(Answer):
     @property
     def bodies(self) -> NDArray[np.uint32] | None:
         """(2,) uint32: both bodies, the smaller number first."""
+
+    @property
+    def names(self) -> NDArray[np.object_] | None:
+        """(2,) objects: names of both bodies."""
 
     @property
     def triangles(self) -> NDArray[np.uint32] | None:
@@ -622,12 +739,12 @@ class Detector:
 
     def __new__(cls, scene: Scene | Body, *, device: Device | None = None) -> Detector: ...
 
-    def update(self, inputs: Mapping[int, Motion]) -> None:
+    def update(self, inputs: Motions) -> None:
         """Move bodies for the next queries.
 
-        - `inputs`: a mapping from body numbers to motions. Deformable bodies take positions, (n, 3)
-          numbers, or a tuple of two such arrays for the start and the end of a step. Rigid bodies take
-          a Pose, or a tuple of two.
+        - `inputs`: a mapping from body numbers or names to motions. Deformable bodies take positions,
+          (n, 3) numbers, or a tuple of two such arrays for the start and the end of a step. Rigid
+          bodies take a Pose or a (4, 4) array, or a tuple of two, or a PoseStep.
 
         Other bodies rest where they are, or where their step ended. Discrete, Near and Distance use
         the start of a step. Arrays of the detector's GPU are read in place, and so are packed numpy
@@ -638,6 +755,28 @@ class Detector:
         by the next query.
         """
 
+    def update_poses(
+        self,
+        ids: Iterable[Key],
+        positions: Array,
+        quaternions: Array,
+        *,
+        end_positions: Array = None,
+        end_quaternions: Array = None,
+    ) -> None:
+        """Move many rigid bodies at once, by arrays of poses with a row a body.
+
+        - `ids`: numbers or names of the bodies.
+        - `positions`: (n, 3) numbers, the translations.
+        - `quaternions`: (n, 4) numbers, unit quaternions (x, y, z, w).
+        - `end_positions`, `end_quaternions`: poses at the end of a step, see PoseStep. Default: bodies
+          rest.
+
+        As `update` with a Pose for each. Arrays of the detector's GPU are read in place. Raises
+        InvalidArgumentError for other numbers of rows, and for a body that does not exist, is named
+        twice or is not rigid; InputError for an invalid pose. It names the row and the body.
+        """
+
     def query(self, query: Query[_A]) -> _A:
         """Return the answer to a query, of the bodies where they are.
 
@@ -645,7 +784,7 @@ class Detector:
         ends, and OutOfMemory if the answer has no room. There is no partial answer.
         """
 
-    def step(self, inputs: Mapping[int, Motion], query: Query[_A]) -> _A:
+    def step(self, inputs: Motions, query: Query[_A]) -> _A:
         """Move bodies and return the answer to a query, in one submission.
 
         As `update` and `query`. An error of the motions or of the query has moved nothing.
@@ -723,7 +862,7 @@ class Detector:
         They are counted: the query runs.
         """
 
-    def prepare(self, inputs: Mapping[int, Motion], queries: Iterable[Query[Any]]) -> None:
+    def prepare(self, inputs: Motions, queries: Iterable[Query[Any]]) -> None:
         """Prepare submissions: run the queries, load every kernel and take all memory.
 
         After it, `submit` allocates nothing and waits for nothing, until another call changes the
@@ -775,17 +914,32 @@ class Detector:
     def add(self, body: Body) -> int:
         """Add a body, and return its number."""
 
-    def remove(self, body: int) -> None:
-        """Remove the body with that number. The next body that is added may take its number."""
+    def remove(self, body: Key) -> None:
+        """Remove a body, by number or name. The next body that is added may take its number."""
 
-    def replace(self, body: int, by: Body) -> None:
-        """Replace the body with that number."""
+    def replace(self, body: Key, by: Body) -> None:
+        """Replace a body, by number or name."""
 
-    def download_positions(self, body: int) -> tuple[NDArray[Any], NDArray[Any]] | tuple[Pose, Pose]:
+    def download_positions(self, body: Key) -> tuple[NDArray[Any], NDArray[Any]] | tuple[Pose, Pose]:
         """Return the place of a body at the start and the end of its step, copied to the host.
 
         Two (n, 3) arrays, or two Pose of a rigid body; both are equal if the body rests. Cost: a copy
         of all vertices if only the device has them, and a wait.
+        """
+
+    def pose(self, body: Key) -> Pose:
+        """Return the pose of a rigid body; in a step, the pose at its start. Cost: see `download_positions`."""
+
+    def poses(self, body: Key) -> tuple[Pose, Pose]:
+        """Return the poses of a rigid body at the start and the end of its step; equal if it rests."""
+
+    def name(self, body: Key) -> str:
+        """Return the name of a body."""
+
+    def id(self, name: str) -> int:
+        """Return the number of the one body with that name.
+
+        Raises InvalidArgumentError if no body has the name, or several have; it lists them.
         """
 
     @property

@@ -1,0 +1,57 @@
+//! Bodies by number or by name.
+
+use crate::errors::choice;
+use nearmiss::error::Error;
+use nearmiss::scene::{BodyId, Scene};
+use pyo3::prelude::*;
+
+/// How Python names a body.
+pub enum Key {
+    Number(usize),
+    Name(String),
+}
+
+impl Key {
+    /// The key of a body; `what` are the keys of the argument, in messages.
+    pub fn of(given: &Bound<'_, PyAny>, what: &str) -> PyResult<Key> {
+        if let Ok(number) = given.extract() {
+            return Ok(Key::Number(number));
+        }
+        if let Ok(name) = given.extract() {
+            return Ok(Key::Name(name));
+        }
+        Err(choice(
+            format!("{what} must be body numbers or names, got {}", given.repr()?),
+            "use a number that add returned, or the name of a body",
+        ))
+    }
+}
+
+/// The key of an argument `body`.
+pub fn body_of(given: &Bound<'_, PyAny>) -> PyResult<Key> {
+    Key::of(given, "bodies")
+}
+
+/// The bodies of keys, in their order.
+///
+/// # Errors
+/// [`Error::InvalidArgument`] for the first number or name that is not of one body.
+pub fn bodies(scene: &Scene, keys: &[Key]) -> Result<Vec<BodyId>, Error> {
+    let names =
+        keys.iter().filter_map(|key| if let Key::Name(name) = key { Some(name.as_str()) } else { None });
+    let names: Vec<&str> = names.collect();
+    let named = if names.is_empty() { Vec::new() } else { scene.ids_of(names)? };
+    let mut named = named.into_iter();
+    let of = |key: &Key| match key {
+        Key::Number(number) => scene.id(*number).ok_or_else(|| missing(number)),
+        Key::Name(name) => named.next().ok_or_else(|| missing(name)),
+    };
+    keys.iter().map(of).collect()
+}
+
+fn missing(body: &impl std::fmt::Display) -> Error {
+    Error::InvalidArgument {
+        what: format!("body {body} is not in the scene"),
+        advice: "use a number that add returned".into(),
+    }
+}
