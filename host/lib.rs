@@ -45,7 +45,7 @@
 //! contact. [`research`] is the laboratory: other solvers, volumes and walks, and the paper's system.
 //!
 //! [`MultiDetector`] divides a scene among several devices. [`Detector::geometry`] computes
-//! vertices, weights, points and normals of contacts.
+//! vertices, weights, points and normals of contacts, and the segments in which triangles cross.
 //!
 //! A simulator with data on the GPU passes its stream ([`Device::from_stream`]) and its arrays
 //! ([`Motion::OnDevice`](scene::Motion::OnDevice)). It submits frames that neither allocate nor

@@ -4,7 +4,7 @@ mod cuts;
 mod interrupted;
 mod tiles;
 
-use crate::contacts::{Answer, ContactGeometry, Contacts, Located};
+use crate::contacts::{Answer, Contacts, Located};
 use crate::detector::Detector;
 use crate::device::{Device, Interrupt};
 use crate::error::Error;
@@ -221,7 +221,7 @@ impl MultiDetector {
     ///
     /// # Errors
     /// As there.
-    pub fn geometry<T: Located>(&mut self, found: &Answer<T>) -> Result<Vec<ContactGeometry>, Error> {
+    pub fn geometry<T: Located>(&mut self, found: &Answer<T>) -> Result<T::Geometry, Error> {
         let query = self.divisible(found.query)?;
         let geometry = self.parts[0].geometry_by(found, &query);
         self.ended(geometry)

@@ -3,9 +3,9 @@
 
 use nearmiss::device::Backend;
 use nearmiss::mesh::Positions;
-use nearmiss::query::Near;
+use nearmiss::query::{Discrete, Near};
 use nearmiss::scene::{Motion, Scene};
-use nearmiss::{Body, Device, Error, Mesh};
+use nearmiss::{Body, Detector, Device, Error, Mesh};
 use nearmiss_lab::OneQuery;
 use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -60,6 +60,8 @@ fn a_fork_is_told_that_it_has_no_threads() {
 
     let device = open(Some(2)).expect("a device");
     assert_eq!(forked(60, || is_told(new(device.clone()))), 0, "a device from before");
+    let mut all = Detector::new(device.clone(), scene()).expect("a detector");
+    let pairs = all.query(&Discrete::default()).expect("an answer");
     let mut own = new(device).expect("a detector");
     let found = own.detect().expect("an answer");
     let id = own.scene().ids().next().expect("a body");
@@ -69,6 +71,7 @@ fn a_fork_is_told_that_it_has_no_threads() {
     assert_eq!(forked(60, || is_told(own.frame(&[(id, Motion::positions(&at))]))), 0);
     assert_eq!(forked(60, || is_told(own.update(&[(id, Motion::positions(&at))]))), 0);
     assert_eq!(forked(60, || is_told(own.geometry(&found))), 0);
+    assert_eq!(forked(60, || is_told(all.geometry(&pairs))), 0);
     assert_eq!(forked(60, || is_told(own.rebuild()) && is_told(own.fingerprints())), 0);
     assert_eq!(forked(60, || is_told(own.narrow_steps()) && is_told(own.plan())), 0);
     own.prepare(&[]).expect("prepared");

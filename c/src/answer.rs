@@ -1,7 +1,7 @@
 //! Answers and their rows.
 
 use crate::error::{NearmissCode, NearmissError, call, free, given, refused};
-use crate::geometry::NearmissGeometry;
+use crate::geometry::{NearmissGeometry, NearmissPairGeometry};
 use crate::records::{NearmissContact, NearmissNearPair, NearmissNearest, NearmissTrianglePair};
 use nearmiss::{Contacts, Error, Rows};
 use std::ffi::{CString, c_char};
@@ -12,6 +12,7 @@ pub struct NearmissAnswer {
     pub(crate) found: Contacts,
     shown: Shown,
     pub(crate) geometry: Vec<NearmissGeometry>,
+    pub(crate) pairs: Vec<NearmissPairGeometry>,
     pub(crate) caveats: Vec<CString>,
     pub(crate) notes: Vec<CString>,
     pub(crate) peak: u64,
@@ -38,11 +39,12 @@ impl NearmissAnswer {
             Rows::Distance(_) => Shown::Nearest,
         };
         let caveats = found.caveats().iter().map(sentence).collect();
-        Ok(NearmissAnswer { found, shown, geometry: Vec::new(), caveats, notes: Vec::new(), peak })
+        let (geometry, pairs) = (Vec::new(), Vec::new());
+        Ok(NearmissAnswer { found, shown, geometry, pairs, caveats, notes: Vec::new(), peak })
     }
 
     /// Rows that the answer does not have.
-    fn without(&self, rows: &str) -> Error {
+    pub(crate) fn without(&self, rows: &str) -> Error {
         let (query, call) = match self.shown {
             Shown::Pairs(_) => ("a discrete", "nearmiss_answer_triangle_pairs"),
             Shown::Contacts(_) => ("a continuous", "nearmiss_answer_contacts"),

@@ -50,6 +50,9 @@ pub struct NearmissQuery {
     pub kind: u32,
     /// Discrete. 1: also test triangles that share a vertex, beyond that vertex. 0: skip them.
     pub adjacent: u32,
+    /// Discrete. 1: leave out triangles that touch without crossing, see `NEARMISS_CROSSING`. 0: list
+    /// them too.
+    pub only_crossing: u32,
     /// Continuous, earliest. 1: take the start of the step to be free of crossing triangles. 0:
     /// count them.
     pub assume_free: u32,
@@ -76,6 +79,7 @@ pub extern "C" fn nearmiss_query(kind: u32) -> NearmissQuery {
     NearmissQuery {
         kind,
         adjacent: 0,
+        only_crossing: 0,
         assume_free: 0,
         max_iterations: 0,
         rebuild: NearmissRebuild::NEARMISS_REBUILD_AUTO as u32,
@@ -108,10 +112,14 @@ impl NearmissQuery {
         // SAFETY: the caller's promise.
         let mut query = unsafe { self.research.choose(plain) }?;
         let adjacent = flag(self.adjacent, "adjacent")?;
+        let only_crossing = flag(self.only_crossing, "only_crossing")?;
         let assume_free = flag(self.assume_free, "assume_free")?;
         self.check_idle(&query)?;
         if let (Query::Discrete(discrete), true) = (&mut query, adjacent) {
             *discrete = discrete.with_adjacent(adjacent);
+        }
+        if let (Query::Discrete(discrete), true) = (&mut query, only_crossing) {
+            *discrete = discrete.with_only_crossing(only_crossing);
         }
         if let Query::Continuous(continuous) = &mut query {
             *continuous = continuous.assuming_free(assume_free);
@@ -148,6 +156,7 @@ impl NearmissQuery {
         let is_near = matches!(query, Query::Near(_));
         let idle = [
             ("adjacent", self.adjacent != 0 && !is_exact),
+            ("only_crossing", self.only_crossing != 0 && !is_exact),
             ("assume_free", self.assume_free != 0 && query.kind().is_at_rest()),
             ("distance", self.distance != 0.0 && !is_near),
             ("tolerance", self.tolerance != -1.0 && !is_certified),

@@ -1,9 +1,10 @@
 //! Results as files: CSV, JSON and VTP.
 
+use crate::detect::Places;
 use crate::output::{Target, unpacked};
 use crate::rows::{Columns, JsonRows};
 use crate::vtp::Vtp;
-use nearmiss::contacts::{Contact, ContactGeometry, Contacts, Kind, Rows, TrianglePair};
+use nearmiss::contacts::{Contact, Contacts, Kind, Rows, TrianglePair};
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
 use nearmiss::research::Summary;
@@ -117,10 +118,11 @@ pub fn write(
     contacts: &Contacts,
     told: &Report,
     (faces, names): (Option<&FileFaces>, Option<&[String]>),
-    geometry: Option<&[ContactGeometry]>,
+    places: Option<&Places>,
 ) -> Result<(), Error> {
     let named = faces.map(|faces| faces.name(&contacts.rows));
     let answer = named.as_ref().unwrap_or(&contacts.rows);
+    let geometry = places.map(|places| &places.geometry);
     let columns = Columns { step: None, names, faces: faces.is_some(), geometry };
     target.write(|out| match format {
         Format::Csv => {
@@ -132,7 +134,7 @@ pub fn write(
         Format::Json => json(out, told, JsonRows { answer, names, geometry }),
         Format::Vtp => {
             let mut vtp = Vtp::default();
-            vtp.add(None, answer, geometry.unwrap_or_default());
+            places.into_iter().for_each(|places| vtp.add(None, answer, places));
             vtp.write(out).map_err(|e| e.to_string())
         }
     })

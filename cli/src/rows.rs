@@ -2,7 +2,7 @@
 //!
 //! | answer | columns |
 //! | --- | --- |
-//! | triangle pairs | `tri_a`, `tri_b`, or `face_a`, `face_b` |
+//! | triangle pairs | `tri_a`, `tri_b`, or `face_a`, `face_b`; with --geometry `kind`, `x_0` to `z_1`, `error` |
 //! | contacts | `kind`, `feature_a`, `feature_b`, `toi`, `toi_upper`, `status` |
 //! | near pairs | `kind`, `feature_a`, `feature_b`, `squared_distance`, `weight_0` to `weight_3`, `closest` |
 //! | the nearest triangles | `tri_a`, `tri_b`, `distance`, and the points `x_a` to `z_b` |
@@ -11,7 +11,8 @@
 //! Before these are `step` of a sequence, and `body_a`, `body_b` if there are several bodies.
 
 use nearmiss::contacts::{
-    Contact, ContactGeometry, Kind, NearPair, NearestTriangles, Rows, Status, TrianglePair,
+    Contact, ContactGeometry, Geometry, Kind, NearPair, NearestTriangles, PairGeometry, PairKind, Part, Rows,
+    Status, TrianglePair,
 };
 use nearmiss::scene::BodyId;
 use serde::{Serialize, Serializer};
@@ -27,7 +28,7 @@ pub struct Columns<'a> {
     /// Whether rows name faces of the file instead of triangles.
     pub faces: bool,
     /// The places of contacts, in columns after the others.
-    pub geometry: Option<&'a [ContactGeometry]>,
+    pub geometry: Option<&'a Geometry>,
 }
 
 impl Columns<'_> {
@@ -46,15 +47,21 @@ impl Columns<'_> {
         let step = self.step.map(|_| "step");
         let bodies = (bodies && self.names.is_some()).then_some(["body_a", "body_b"]);
         let all = step.into_iter().chain(bodies.into_iter().flatten()).chain(own.iter().copied());
-        let all = all.chain(self.geometry.into_iter().flat_map(|_| GEOMETRY));
+        let places: &[&str] = match (self.geometry, answer) {
+            (None, _) => &[],
+            (Some(_), Rows::Pairs(_)) => &PAIR_GEOMETRY,
+            (Some(_), _) => &GEOMETRY,
+        };
+        let all = all.chain(places.iter().copied());
         csv.write_record(all).map_err(|e| e.to_string())
     }
 
     /// A row a contact. A number is printed as the shortest decimal that reads back to the same bits.
     pub fn rows(&self, csv: &mut csv::Writer<impl Write>, answer: &Rows) -> Result<(), String> {
         let wrote = match answer {
-            Rows::Pairs(pairs) => pairs.iter().try_for_each(|pair| {
-                self.row(csv, Some(pair.bodies), &pair.triangles.map(|triangle| triangle.to_string()))
+            Rows::Pairs(pairs) => pairs.iter().enumerate().try_for_each(|(at, pair)| {
+                let own = pair.triangles.map(|triangle| triangle.to_string());
+                self.row(csv, Some(pair.bodies), &self.with(at, &own))
             }),
             Rows::Contacts(all) => all
                 .iter()
@@ -75,8 +82,13 @@ impl Columns<'_> {
 
     /// A row, and the place of its contact.
     fn with(&self, at: usize, own: &[String]) -> Vec<String> {
-        let place = self.geometry.and_then(|all| all.get(at)).map(place);
-        own.iter().cloned().chain(place.into_iter().flatten()).collect()
+        let mut all = own.to_vec();
+        match self.geometry {
+            Some(Geometry::Contacts(contacts)) => all.extend(contacts.get(at).into_iter().flat_map(place)),
+            Some(Geometry::Pairs(pairs)) => all.extend(pairs.get(at).into_iter().flat_map(pair_place)),
+            None => {}
+        }
+        all
     }
 
     fn row(
@@ -116,6 +128,26 @@ const GEOMETRY: [&str; 22] = [
     "weight_1", "weight_2", "weight_3", "x_a", "y_a", "z_a", "x_b", "y_b", "z_b", "distance", "normal_x",
     "normal_y", "normal_z",
 ];
+
+/// How two triangles meet, and the ends of their common segment; these are empty for an overlap.
+const PAIR_GEOMETRY: [&str; 8] = ["kind", "x_0", "y_0", "z_0", "x_1", "y_1", "z_1", "error"];
+
+fn pair_place(g: &PairGeometry) -> [String; 8] {
+    let end = |end: usize, k: usize| g.ends.map_or(String::new(), |ends| ends[end][k].to_string());
+    let [x, y, z] = [0, 1, 2].map(|k| end(0, k));
+    let [u, v, w] = [0, 1, 2].map(|k| end(1, k));
+    let error = g.ends.map_or(String::new(), |_| g.error.to_string());
+    [pair_kind(g.kind).into(), x, y, z, u, v, w, error]
+}
+
+fn pair_kind(kind: PairKind) -> &'static str {
+    match kind {
+        PairKind::Crossing => "crossing",
+        PairKind::Point => "point",
+        PairKind::Segment => "segment",
+        PairKind::Overlap => "overlap",
+    }
+}
 
 fn place(g: &ContactGeometry) -> impl Iterator<Item = String> + use<> {
     let numbers = g.weights.into_iter().chain(g.points.into_iter().flatten());
@@ -170,7 +202,7 @@ pub struct JsonRows<'a> {
     /// The names of several bodies.
     pub names: Option<&'a [String]>,
     /// The place of each contact: `geometry` of its row.
-    pub geometry: Option<&'a [ContactGeometry]>,
+    pub geometry: Option<&'a Geometry>,
 }
 
 /// A row, the names of its bodies, and its place.
@@ -187,7 +219,22 @@ struct Placed<'a, T> {
 }
 
 #[derive(Serialize)]
-struct Place<'a> {
+#[serde(untagged)]
+enum Place<'a> {
+    Contact(ContactPlace<'a>),
+    Pair(PairPlace),
+}
+
+#[derive(Serialize)]
+struct PairPlace {
+    kind: PairKind,
+    ends: Option<[[f64; 3]; 2]>,
+    error: f64,
+    parts: Option<[[u8; 2]; 2]>,
+}
+
+#[derive(Serialize)]
+struct ContactPlace<'a> {
     owner: [usize; 4],
     vertices: &'a [u32; 4],
     weights: &'a [f64; 4],
@@ -232,9 +279,11 @@ struct Nearest {
 impl Serialize for JsonRows<'_> {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         match self.answer {
-            Rows::Pairs(pairs) => to.collect_seq(pairs.iter().map(|&TrianglePair { bodies, triangles }| {
-                self.placed(None, bodies, Triangles { triangles })
-            })),
+            Rows::Pairs(pairs) => {
+                to.collect_seq(pairs.iter().enumerate().map(|(at, &TrianglePair { bodies, triangles })| {
+                    self.placed(Some(at), bodies, Triangles { triangles })
+                }))
+            }
             Rows::Contacts(all) => to.collect_seq(all.iter().enumerate().map(|(at, c)| {
                 let row = Meeting {
                     kind: kind(c.kind),
@@ -270,15 +319,24 @@ impl<'a> JsonRows<'a> {
     /// A row with the names of its bodies, and the place of contact `at`.
     fn placed<T>(&self, at: Option<usize>, bodies: [BodyId; 2], row: T) -> Placed<'a, T> {
         let [body_a, body_b] = bodies.map(|body| self.names.map(|names| names[body.index()].as_str()));
-        let place = at.zip(self.geometry).and_then(|(at, all)| all.get(at));
-        let geometry = place.map(|g| Place {
-            owner: g.owner.map(|body| body.index()),
-            vertices: &g.vertices,
-            weights: &g.weights,
-            points: &g.points,
-            distance: g.distance,
-            normal: &g.normal,
+        let geometry = at.zip(self.geometry).and_then(|(at, all)| match all {
+            Geometry::Contacts(all) => all.get(at).map(|g| Place::Contact(contact_place(g))),
+            Geometry::Pairs(all) => all.get(at).map(|g| {
+                let parts = g.parts.map(|ends| ends.map(|parts| parts.map(Part::number)));
+                Place::Pair(PairPlace { kind: g.kind, ends: g.ends, error: g.error, parts })
+            }),
         });
         Placed { body_a, body_b, row, geometry }
+    }
+}
+
+fn contact_place(g: &ContactGeometry) -> ContactPlace<'_> {
+    ContactPlace {
+        owner: g.owner.map(|body| body.index()),
+        vertices: &g.vertices,
+        weights: &g.weights,
+        points: &g.points,
+        distance: g.distance,
+        normal: &g.normal,
     }
 }

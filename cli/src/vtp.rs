@@ -2,8 +2,13 @@
 //!
 //! Numbers are written in full, so that they read back to the same bits. A contact has two points:
 //! the nearest ones of both features. Two distinct points are joined by a line; two equal ones are a
-//! vertex. VTK lists all vertices before all lines, and `row` is the row of each in a CSV.
+//! vertex. VTK lists all vertices before all lines, and `row` is the row of each in a CSV. Triangle
+//! pairs have cells of their own: see [`meetings`].
 
+mod meetings;
+
+use crate::detect::Places;
+use meetings::Meetings;
 use nearmiss::contacts::{ContactGeometry, Kind, NearestTriangles, Rows};
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -25,6 +30,8 @@ struct Entry {
 #[derive(Default)]
 pub struct Vtp {
     entries: Vec<Entry>,
+    /// Triangle pairs, of a discrete query.
+    meetings: Option<Meetings>,
     steps: bool,
 }
 
@@ -33,9 +40,9 @@ const TRIANGLES: u8 = Kind::Ee as u8 + 1;
 
 impl Vtp {
     /// Takes the contacts of an answer; `step` of a sequence.
-    pub fn add(&mut self, step: Option<usize>, answer: &Rows, geometry: &[ContactGeometry]) {
+    pub fn add(&mut self, step: Option<usize>, answer: &Rows, places: &Places) {
         self.steps |= step.is_some();
-        let step = step.unwrap_or(0);
+        let (step, geometry) = (step.unwrap_or(0), places.geometry.contacts());
         let entry = |kind, features, time, g: &ContactGeometry| Entry {
             step,
             kind: kind as u8,
@@ -56,16 +63,26 @@ impl Vtp {
                 );
             }
             Rows::Distance(Some(nearest)) => self.entries.push(of_triangles(step, nearest)),
-            // `args` refuses these.
-            Rows::Distance(None) | Rows::Pairs(_) | Rows::Earliest(_) => {}
+            // `args` refuses a time.
+            Rows::Distance(None) | Rows::Earliest(_) => {}
+            Rows::Pairs(_) => self.meetings.get_or_insert_default().add(step, places),
         }
     }
 
     /// Writes the file.
     pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        out.write_all(b"<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\">\n<PolyData>\n")?;
+        match &self.meetings {
+            Some(meetings) => meetings.write(out, self.steps)?,
+            None => self.piece(out)?,
+        }
+        out.write_all(b"</PolyData>\n</VTKFile>\n")
+    }
+
+    /// Writes the contacts.
+    fn piece(&self, out: &mut dyn Write) -> io::Result<()> {
         let apart = |&at: &usize| self.entries[at].points[0] != self.entries[at].points[1];
         let (lines, vertices): (Vec<usize>, Vec<usize>) = (0..self.entries.len()).partition(apart);
-        out.write_all(b"<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\">\n<PolyData>\n")?;
         let (points, verts) = (2 * self.entries.len(), vertices.len());
         writeln!(
             out,
@@ -92,7 +109,7 @@ impl Vtp {
                 array(out, "Int64", "offsets", 1, (1..=cells.len()).map(|end| end * size))
             })?;
         }
-        out.write_all(b"</Piece>\n</PolyData>\n</VTKFile>\n")
+        out.write_all(b"</Piece>\n")
     }
 
     /// The data of each cell, in the order of the cells.

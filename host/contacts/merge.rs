@@ -67,7 +67,7 @@ impl Contacts {
         }
         self.starts_crossing =
             self.starts_crossing.zip(share.starts_crossing).map(|(own, other)| own + other);
-        self.is_free = self.rows.is_free(self.starts_crossing);
+        self.is_free = self.rows.is_free(self.starts_crossing) && !self.query.is_only_crossing();
         self.stats.add(&share.stats);
         self.undecided += share.undecided;
         share.caveats.into_iter().for_each(|reason| self.add_caveat(reason));

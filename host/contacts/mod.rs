@@ -1,15 +1,17 @@
 //! Results: contacts in canonical order, and their hash.
 
 mod caveats;
+mod curves;
 mod first;
 pub(crate) mod geometry;
 mod hash;
-mod located;
+pub(crate) mod located;
 mod merge;
 mod near;
 mod nearest;
 mod notes;
 pub mod on_device;
+mod pairs;
 mod rows;
 pub(crate) mod sort;
 mod stats;
@@ -18,14 +20,16 @@ mod triangles;
 pub(crate) mod work;
 
 pub use caveats::{Caveat, TURN_DEGREES};
+pub use curves::{Curve, Curves, crossing_curves};
 pub use first::FirstContact;
 pub use geometry::ContactGeometry;
 pub(crate) use geometry::edge_weights;
-pub use located::Located;
+pub use located::{Geometry, Located};
 pub use near::{Closest, NearPair};
 pub use nearest::NearestTriangles;
 pub use notes::Note;
 pub use on_device::{DeviceAnswer, DeviceList, Entries};
+pub use pairs::{END_ERROR, PairGeometry, PairKind, Part};
 pub(crate) use rows::Row;
 pub use rows::RowList;
 pub use stats::Stats;
@@ -207,6 +211,8 @@ impl<T> Answer<T> {
     /// - Continuous and earliest: the start was checked, no triangles share a point there, and
     ///   nothing meets within the step.
     /// - Discrete: no pair of triangles shares a point. Pairs with a common vertex are not tested.
+    ///   False for a query of [crossing triangles alone](crate::Discrete::with_only_crossing), which
+    ///   does not show what touches.
     /// - Distance: it exceeds 0, or no two bodies may meet.
     /// - Near: always false, since features within a distance do not show if anything crosses.
     ///
@@ -236,7 +242,7 @@ impl Contacts {
 
     /// Makes an answer with these rows.
     pub(crate) fn new(rows: Rows, query: Query, starts_crossing: Option<u64>) -> Contacts {
-        let is_free = rows.is_free(starts_crossing);
+        let is_free = rows.is_free(starts_crossing) && !query.is_only_crossing();
         Answer {
             rows,
             query,

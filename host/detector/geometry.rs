@@ -1,8 +1,10 @@
-//! Geometry of contacts.
+//! Geometry of contacts and of triangle pairs.
 
 use super::Detector;
 use crate::contacts::geometry::{Corners, Named};
-use crate::contacts::{Answer, ContactGeometry, Kind, Located};
+use crate::contacts::located::sealed::{Computed as _, Inputs};
+use crate::contacts::{Answer, ContactGeometry, Geometry, Kind, Located, PairGeometry, TrianglePair};
+use crate::device::emulator::start_threads;
 use crate::error::Error;
 use crate::memory;
 use crate::pipeline::{Layout, Whereabouts};
@@ -11,14 +13,32 @@ use crate::scene::{Body, BodyKind, PoseStep};
 use rayon::prelude::*;
 
 impl Detector {
-    /// Computes vertices, weights, points and normal of every row of a continuous or near answer,
-    /// in order. The bodies must be in the answer's positions. Cost: a copy of all vertices from
-    /// the device, and a wait; 300 operations a row.
+    /// Computes the geometry of every row of a continuous, near or discrete answer, in order. The
+    /// bodies must be in the answer's positions.
+    ///
+    /// - [`ContactGeometry`] of contacts and near pairs: vertices, weights, points and normal. Cost:
+    ///   a copy of all vertices from the device, and a wait; 300 operations a row.
+    /// - [`PairGeometry`] of triangle pairs: whether they cross or touch, and the segment in which
+    ///   they do. Cost: some microseconds a row; a copy of device-resident bodies, and a wait.
+    ///
+    /// ```
+    /// use nearmiss::{Body, Detector, Device, Discrete, Mesh, contacts::PairKind, device::Backend, mesh::Positions};
+    ///
+    /// let corners = vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [9.0, 9.0, 1.0]];
+    /// let mesh = Mesh::new("two triangles", Positions::F32(corners), vec![[0, 1, 2], [3, 4, 5]])?;
+    /// let mut detector = Detector::new(Device::open(Backend::Cpu, None)?, Body::deformable(mesh))?;
+    /// let pairs = detector.query(&Discrete::default())?;
+    /// let geometry = detector.geometry(&pairs)?;
+    /// assert_eq!(geometry[0].kind, PairKind::Crossing);
+    /// println!("from {:?} to {:?}", geometry[0].ends.map(|ends| ends[0]), geometry[0].ends.map(|ends| ends[1]));
+    /// # Ok::<(), nearmiss::Error>(())
+    /// ```
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for answers to discrete, earliest and distance queries, and for
-    /// contacts of bodies that have changed since. [`Error::OutOfMemory`]; those of the device.
-    pub fn geometry<T: Located>(&mut self, found: &Answer<T>) -> Result<Vec<ContactGeometry>, Error> {
+    /// [`Error::InvalidArgument`] for answers to earliest and distance queries and of the solver
+    /// `moller`, for contacts of bodies that have changed since, and for triangle pairs that do not
+    /// share a point where the bodies are now. [`Error::OutOfMemory`]; those of the device.
+    pub fn geometry<T: Located>(&mut self, found: &Answer<T>) -> Result<T::Geometry, Error> {
         self.geometry_by(found, &found.query)
     }
 
@@ -27,8 +47,44 @@ impl Detector {
         &mut self,
         found: &Answer<T>,
         query: &Query,
+    ) -> Result<T::Geometry, Error> {
+        let geometry = match found.rows.inputs()? {
+            Inputs::Features(named) => {
+                Geometry::Contacts(self.of_features(named, query, found.query.kind().is_at_rest())?)
+            }
+            Inputs::Triangles(pairs) => Geometry::Pairs(self.of_pairs(pairs, &found.query)?),
+        };
+        Ok(T::Geometry::of(geometry))
+    }
+
+    /// Computes the geometry of triangle pairs.
+    fn of_pairs(&mut self, pairs: &[TrianglePair], query: &Query) -> Result<Vec<PairGeometry>, Error> {
+        if !query.solver().is_certain() {
+            return Err(Error::InvalidArgument {
+                what: format!("geometry of pairs by the solver {}, which may share no point", query.solver()),
+                advice: "use a query with the solver exact".into(),
+            });
+        }
+        if pairs.is_empty() {
+            return Ok(Vec::new());
+        }
+        // The list in pieces and in one.
+        memory::require("geometry of pairs", (2 * pairs.len() * size_of::<PairGeometry>()) as u64)?;
+        start_threads()?;
+        let known = self.none_lost().and_then(|()| self.download_positions());
+        self.ended(known)?;
+        let bodies = self.scene.bodies();
+        pairs.par_iter().map(|pair| PairGeometry::of_bodies(pair, bodies).ok_or_else(of_others)).collect()
+    }
+
+    /// Computes the geometry of features. At rest they are at the start of the step.
+    fn of_features(
+        &mut self,
+        named: Vec<Named>,
+        query: &Query,
+        is_at_rest: bool,
     ) -> Result<Vec<ContactGeometry>, Error> {
-        let count = found.rows.count()?;
+        let count = named.len();
         if count == 0 {
             return Ok(Vec::new());
         }
@@ -46,9 +102,7 @@ impl Detector {
         self.ended(begun)?;
         let layout = self.layout(query)?;
         let pipeline = self.engine.pipeline.as_ref().ok_or_else(of_others)?;
-        let named = found.rows.named();
         let places = pipeline.whereabouts()?;
-        let is_at_rest = found.query.kind().is_at_rest();
         let ends = &places.ends[..if is_at_rest { 1 } else { places.looked_at }];
         let at = |vertex: u32| {
             let at =
@@ -143,7 +197,7 @@ fn corners(layout: &Layout, named: &Named) -> Option<([u32; 4], [u32; 4])> {
 /// Error for contacts of other bodies.
 fn of_others() -> Error {
     Error::InvalidArgument {
-        what: "contacts of other bodies than the scene has now".into(),
-        advice: "compute their geometry before bodies are added, removed or replaced".into(),
+        what: "contacts of other bodies, or of other positions, than the scene has now".into(),
+        advice: "compute their geometry before bodies move, or are added, removed or replaced".into(),
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{ListedRows, Question, Search, Solver};
 use crate::contacts::TrianglePair;
+use crate::error::Error;
 
 /// Triangle pairs that share a point at t = 0, by exact signs.
 ///
@@ -12,11 +13,15 @@ use crate::contacts::TrianglePair;
 ///
 /// // Also triangles that share a vertex, if they meet outside it.
 /// let query = Discrete::default().with_adjacent(true);
+/// // Only triangles that cross: a wall that stands on a floor is left out.
+/// let query = Discrete::default().with_only_crossing(true);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Discrete {
     /// Test of a pair.
     pub(crate) test: TriangleTest,
+    /// Whether pairs that touch without crossing are left out.
+    pub(crate) only_crossing: bool,
     /// How candidates are found.
     pub(crate) search: Search,
 }
@@ -73,6 +78,20 @@ impl Discrete {
     pub const fn with_adjacent(self, adjacent: bool) -> Discrete {
         Discrete { test: TriangleTest::Exact { adjacent }, ..self }
     }
+
+    /// Sets whether only triangles that cross are reported, see
+    /// [`PairKind::Crossing`](crate::contacts::PairKind::Crossing). Triangles that touch in a point or
+    /// in an edge and triangles in one plane are left out. It holds on the device too; the cost is
+    /// some exact signs for each pair that touches. Only the exact test has it.
+    #[must_use]
+    pub const fn with_only_crossing(self, only_crossing: bool) -> Discrete {
+        Discrete { only_crossing, ..self }
+    }
+
+    /// Returns whether only triangles that cross are reported.
+    pub const fn is_only_crossing(&self) -> bool {
+        self.only_crossing
+    }
 }
 
 impl Question for Discrete {
@@ -96,6 +115,15 @@ impl Question for Discrete {
     }
     fn keeps_adjacent(&self) -> bool {
         self.test.has_adjacent()
+    }
+    fn check(&self) -> Result<(), Error> {
+        if self.only_crossing && self.test == TriangleTest::Moller {
+            return Err(Error::InvalidArgument {
+                what: "a query for crossing triangles alone cannot use the solver moller".into(),
+                advice: "use the solver exact, or leave out the choice of crossing triangles".into(),
+            });
+        }
+        Ok(())
     }
     fn rows(&self) -> Option<ListedRows> {
         let advice = "use a smaller scene, or test bodies against each other only";

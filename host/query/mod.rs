@@ -203,7 +203,7 @@ impl Query {
     /// Returns whether it can read rigid and fixed bodies as instances of their meshes: a discrete
     /// query by exact signs, without a choice of how candidates are found.
     pub(crate) fn may_read_instances(&self) -> bool {
-        let Query::Discrete(Discrete { test: TriangleTest::Exact { .. }, search }) = self else {
+        let Query::Discrete(Discrete { test: TriangleTest::Exact { .. }, search, .. }) = self else {
             return false;
         };
         *search == Search { rebuild: search.rebuild, ..Search::default() }
@@ -217,6 +217,11 @@ impl Query {
     /// Returns whether triangles that share a vertex are candidates.
     pub(crate) fn keeps_adjacent(&self) -> bool {
         self.question().keeps_adjacent()
+    }
+
+    /// Returns whether only triangles that cross are listed, of those that share a point.
+    pub(crate) fn is_only_crossing(&self) -> bool {
+        if let Query::Discrete(discrete) = self { discrete.only_crossing } else { false }
     }
 
     /// Returns the largest distance of features that may be listed. That is minimum separation plus

@@ -7,12 +7,15 @@ use crate::errors::raised;
 use crate::geometry::Geometry;
 use crate::key::{Key, body_of};
 use crate::on_device::DeviceAnswer;
+use crate::pairs::{Curves, PairGeometry};
 use crate::pose::Pose;
 use crate::query::{Accuracy, Query, discrete, iterations_of, near, queries_of};
+use crate::rows::TrianglePairs;
 use crate::scene::{Body, Scene, scene_of};
 use crate::turns::python;
 use crate::watch::watched;
 use nearmiss::Interrupt;
+use nearmiss::contacts::{Geometry as Places, crossing_curves};
 use nearmiss::research::DetectorExt;
 use nearmiss::scene::BodyId;
 use nearmiss::words::counted;
@@ -143,9 +146,10 @@ impl Detector {
     /// Return triangles that share a point at t = 0: the answer to Discrete.
     ///
     /// - `adjacent`: also test triangles with a common vertex, for points beyond that vertex or edge.
-    #[pyo3(signature = (*, adjacent = false))]
-    fn discrete<'py>(&self, py: Python<'py>, adjacent: bool) -> Answered<'py> {
-        self.answer_to(py, discrete(adjacent)?)
+    /// - `only_crossing`: leave out triangles that touch without crossing.
+    #[pyo3(signature = (*, adjacent = false, only_crossing = false))]
+    fn discrete<'py>(&self, py: Python<'py>, adjacent: bool, only_crossing: bool) -> Answered<'py> {
+        self.answer_to(py, discrete(adjacent, only_crossing)?)
     }
 
     /// Return all contacts of the step: the answer to Continuous.
@@ -195,13 +199,33 @@ impl Detector {
         self.answer_to(py, nearmiss::Query::distance())
     }
 
-    /// Return vertices, weights, points and normals of an answer's rows.
+    /// Return where the features or triangles of an answer's rows meet.
     ///
-    /// - `answer`: Contacts or NearPairs of this detector. Bodies must not have moved since.
+    /// - `answer`: an answer of this detector. Bodies must not have moved since.
     ///
+    /// Returns Geometry for Contacts and NearPairs: vertices, weights, points and normals. Returns
+    /// PairGeometry for TrianglePairs: how they meet, and the segment in which they do.
+    /// Raises InvalidArgumentError for other answers, and for those of the solver "moller".
+    fn geometry<'py>(&self, py: Python<'py>, answer: &Answer) -> Answered<'py> {
+        match self.work_of(py, answer, |detector, found| detector.geometry(found))? {
+            Places::Contacts(rows) => Ok(Bound::new(py, Geometry::from(rows))?.into_any()),
+            Places::Pairs(rows) => Ok(Bound::new(py, PairGeometry::from(rows))?.into_any()),
+        }
+    }
+
+    /// Return the curves in which surfaces cross, chained from the rows that cross.
+    ///
+    /// - `answer`: TrianglePairs of this detector. Bodies must not have moved since.
+    ///
+    /// Segments are joined by the vertex, edge or face of each body that holds their ends, never by
+    /// coordinates. A curve ends at a border, at a seam of equal vertices, where an edge lies on a face,
+    /// and where more than two surfaces meet.
     /// Raises InvalidArgumentError for other answers.
-    fn geometry(&self, py: Python<'_>, answer: &Answer) -> PyResult<Geometry> {
-        self.work_of(py, answer, |detector, found| detector.geometry(found)).map(Geometry::from)
+    fn curves(&self, py: Python<'_>, answer: PyRef<'_, TrianglePairs>) -> PyResult<Curves> {
+        let found = self.work_of(py, answer.as_super(), |detector, found| {
+            crossing_curves(detector.geometry(found)?.pairs(), detector.scene().bodies())
+        });
+        found.map(Curves::from)
     }
 
     /// Return all figures of an answer as a dictionary, as the program prints them with --json.

@@ -18,6 +18,7 @@ mod host;
 mod key;
 mod matrix;
 mod on_device;
+mod pairs;
 mod pose;
 mod pose_step;
 mod poses;
@@ -47,6 +48,8 @@ mod _native {
     use super::host::read_mesh;
     #[pymodule_export]
     use super::on_device::{DeviceAnswer, DeviceArray};
+    #[pymodule_export]
+    use super::pairs::{Curves, PairGeometry};
     #[pymodule_export]
     use super::pose::Pose;
     #[pymodule_export]

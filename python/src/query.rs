@@ -67,10 +67,13 @@ impl Query {
     fn numbers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let numbers = PyDict::new(py);
         match &self.query {
-            nearmiss::Query::Discrete(discrete)
-                if discrete.chosen() == TriangleTest::Exact { adjacent: true } =>
-            {
-                numbers.set_item("adjacent", true)?;
+            nearmiss::Query::Discrete(discrete) => {
+                if discrete.chosen() == (TriangleTest::Exact { adjacent: true }) {
+                    numbers.set_item("adjacent", true)?;
+                }
+                if discrete.is_only_crossing() {
+                    numbers.set_item("only_crossing", true)?;
+                }
             }
             nearmiss::Query::Near(near) => numbers.set_item("distance", near.distance)?,
             _ => {}
@@ -172,8 +175,8 @@ pub fn iterations_of(given: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
     Ok(optional(given, "max_iterations", [1, u32::MAX.into()])?.map(|most| most as u32))
 }
 
-pub fn discrete(adjacent: bool) -> PyResult<nearmiss::Query> {
-    checked(query::Discrete::default().with_adjacent(adjacent))
+pub fn discrete(adjacent: bool, only_crossing: bool) -> PyResult<nearmiss::Query> {
+    checked(query::Discrete::default().with_adjacent(adjacent).with_only_crossing(only_crossing))
 }
 
 pub fn near(distance: f64) -> PyResult<nearmiss::Query> {
@@ -183,15 +186,18 @@ pub fn near(distance: f64) -> PyResult<nearmiss::Query> {
 /// Query for triangles that share a point at t = 0, by exact signs. Answer: TrianglePairs.
 ///
 /// - `adjacent`: also test triangles with a common vertex, for points beyond that vertex or edge.
+/// - `only_crossing`: leave out triangles that touch without crossing: a wall that stands on a floor.
+///   See PairKind.CROSSING.
 #[pyclass(module = "nearmiss", frozen, extends = Query)]
 pub struct Discrete;
 
 #[pymethods]
 impl Discrete {
     #[new]
-    #[pyo3(signature = (*, adjacent = false))]
-    fn new(adjacent: bool) -> PyResult<PyClassInitializer<Discrete>> {
-        Ok(PyClassInitializer::from(Query { query: discrete(adjacent)? }).add_subclass(Discrete))
+    #[pyo3(signature = (*, adjacent = false, only_crossing = false))]
+    fn new(adjacent: bool, only_crossing: bool) -> PyResult<PyClassInitializer<Discrete>> {
+        let query = discrete(adjacent, only_crossing)?;
+        Ok(PyClassInitializer::from(Query { query }).add_subclass(Discrete))
     }
 }
 

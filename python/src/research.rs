@@ -71,6 +71,10 @@ fn by_solver(mut query: nearmiss::Query, name: &str) -> PyResult<nearmiss::Query
     let moving = ContinuousSolver::named(solver);
     match (&mut query, moving) {
         (nearmiss::Query::Discrete(discrete), _) => {
+            if solver == Solver::Moller && discrete.is_only_crossing() {
+                let what = "solver \"moller\" cannot tell triangles that cross from those that touch";
+                return Err(choice(what, "use \"exact\""));
+            }
             let test = match (solver, discrete.chosen()) {
                 (Solver::Moller, TriangleTest::Exact { adjacent: true }) => {
                     return Err(choice("solver \"moller\" cannot test adjacent triangles", "use \"exact\""));

@@ -77,7 +77,7 @@ impl TrianglePairs {
         field::<_, u32, 2>(slf.as_super(), "triangles", Rows::pairs, |pair| pair.triangles.as_ptr())
     }
 
-    /// Whether no two triangles share a point.
+    /// Whether no two triangles share a point; False with `only_crossing`, which does not show it.
     #[getter]
     fn is_free(slf: &Bound<'_, Self>) -> bool {
         slf.as_super().get().contacts.is_free()

@@ -109,6 +109,40 @@ def test_near_points_are_where_the_weights_say():
     assert set(found.kind.tolist()) == {nm.Kind.VERTEX_FACE, nm.Kind.EDGE_EDGE}
 
 
+def test_triangles_meet_in_their_segments():
+    vertices, faces = two_triangles()
+    # A third one stands on the first.
+    vertices = np.vstack([vertices, [[0.5, 0.5, 0], [1.5, 0.5, 0], [0.5, 0.5, 2]]]).astype(np.float32)
+    faces = np.vstack([faces, [[6, 7, 8]]])
+    detector = nm.Detector(nm.Body(vertices, faces))
+    found = detector.discrete()
+    at = detector.geometry(found)
+    assert found.triangles.tolist() == [[0, 1], [0, 2]] and len(at) == 2
+    assert at.kind.tolist() == [nm.PairKind.CROSSING, nm.PairKind.SEGMENT]
+    assert at.ends.shape == (2, 2, 3) and at.ends[:, :, 2].tolist() == [[0, 0], [0, 0]]
+    assert sorted(at.ends[0, :, 0].tolist()) == [1, 1.5] and sorted(at.ends[1, :, 0].tolist()) == [0.5, 1.5]
+    assert at.errors.tolist() == [1.5 / 2**53, 0] and at.parts.shape == (2, 2, 2)
+    # The ends of the second are corners 0 and 1 of its triangle, inside the first.
+    assert sorted(at.parts[1].tolist()) == [[0, 4], [0, 5]]
+    curves = detector.curves(found)
+    assert (len(curves), curves.starts.tolist(), curves.is_closed.tolist()) == (1, [0, 2], [False])
+    assert curves.points.tolist() == at.ends[0].tolist()
+    assert (curves.rows.tolist(), curves.groups.tolist(), curves.row_groups.tolist()) == ([0], [0], [0, -1])
+    only = detector.discrete(only_crossing=True)
+    assert only.triangles.tolist() == [[0, 1]] and not only.is_free
+    assert nm.self_intersections(vertices, faces, only_crossing=True).tolist() == [[0, 1]]
+    with pytest.raises(TypeError):
+        detector.curves(detector.near(0.1))
+
+
+def test_an_overlap_has_no_ends():
+    vertices = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, 0], [5, 1, 0], [1, 5, 0]])
+    detector = nm.Detector(nm.Body(vertices, [[0, 1, 2], [3, 4, 5]]))
+    at = detector.geometry(detector.discrete())
+    assert at.kind.tolist() == [nm.PairKind.OVERLAP] and np.isnan(at.ends).all()
+    assert at.parts.tolist() == [[[255, 255], [255, 255]]] and len(detector.discrete(only_crossing=True)) == 0
+
+
 def test_every_corner_has_its_owner():
     vertices, faces = soup(40, 7, 0.4)
     scene = nm.Scene(nm.Body(vertices, faces), nm.Body(vertices + 0.01, faces))

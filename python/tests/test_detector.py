@@ -99,6 +99,7 @@ def methods(detector):
     yield detector.near(0.02), nm.Near(0.02), nm.NearPairs
     yield detector.discrete(), nm.Discrete(), nm.TrianglePairs
     yield detector.discrete(adjacent=True), nm.Discrete(adjacent=True), nm.TrianglePairs
+    yield detector.discrete(only_crossing=True), nm.Discrete(only_crossing=True), nm.TrianglePairs
     yield detector.distance(), nm.Distance(), nm.NearestTriangles
     yield detector.continuous(), nm.Continuous(), nm.Contacts
     yield detector.continuous(**accuracy), nm.Continuous(**accuracy), nm.Contacts

@@ -19,6 +19,8 @@ THERE = "Pose(rotation=[0.0, 0.0, 0.6, 0.8], translation=[1.0, 2.0, 3.5])"
 CHOICES = [
     "Discrete()",
     "Discrete(adjacent=True)",
+    "Discrete(only_crossing=True)",
+    "Discrete(adjacent=True, only_crossing=True)",
     "configure(Discrete(adjacent=True), broad_phase='tree')",
     "configure(Discrete(), solver='moller', rebuild='manual')",
     "Continuous()",

@@ -25,8 +25,12 @@ found = detector.query(slow)
 near = detector.collect(nm.Near(0.1))
 detector.prepare({0: nm.Pose()}, [nm.Near(0.1), nm.Earliest()])
 times: NDArray[np.float64] = found.toi
+places: nm.Geometry = detector.geometry(found)
+meetings: nm.PairGeometry = detector.geometry(triangles)
+curves: nm.Curves = detector.curves(triangles)
 body = nm.Body(vertices, faces, kind="soft")  # type: ignore[arg-type]
 wrong: nm.NearPairs = detector.query(nm.Earliest())  # type: ignore[assignment]
 nm.research.configure(nm.Discrete(), broad_phase="octree")  # type: ignore[arg-type]
+detector.curves(found)  # type: ignore[arg-type]
 nearest.distances  # type: ignore[attr-defined]
 bad: int = found.hash  # type: ignore[assignment]

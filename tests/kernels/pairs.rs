@@ -8,6 +8,7 @@ use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
 use nearmiss_kernels::prim::inclusion::Params;
 use nearmiss_kernels::prim::isolate::{Rungs, ee_certified, vf_certified};
+use nearmiss_lab::oracle::crossing::meeting;
 use nearmiss_lab::oracle::triangles_meet;
 use nearmiss_lab::pairs::{Answers, Options, Stored, ask, ask_triangles, mean_edge};
 use nearmiss_lab::{Case, Features};
@@ -171,6 +172,33 @@ fn triangles_meet_as_the_oracle_says() {
     }
     let device = support::engine();
     assert!(ask_triangles(&device, &pairs, &continuous(), Stored::F64).is_err());
+}
+
+/// The kernels list the pairs that cross, among pairs that touch in all ways.
+#[test]
+fn only_crossing_triangles_are_those_of_the_oracle() {
+    let mut r = SmallRng::seed_from_u64(4);
+    let mut corner = || std::array::from_fn(|_| f64::from(r.random_range(0..4)) - 1.5);
+    let pairs: Vec<_> =
+        (0..300).map(|_| std::array::from_fn(|_| std::array::from_fn(|_| corner()))).collect();
+    let truth: Vec<bool> =
+        pairs.iter().map(|[p, q]| meeting(p, q).is_some_and(|meeting| meeting.is_crossing)).collect();
+    let [all, crossing] = [false, true].map(|only| Query::from(Discrete::default().with_only_crossing(only)));
+    for device in machines() {
+        for stored in [Stored::F64, Stored::F32] {
+            for some in [2, 300] {
+                let found = ask_triangles(&device, &pairs[..some], &crossing, stored).expect("answers");
+                assert_eq!(found.meet, truth[..some], "{stored:?}");
+            }
+            let touching = ask_triangles(&device, &pairs, &all, stored).expect("answers");
+            let count = |meet: &[bool]| meet.iter().filter(|meet| **meet).count();
+            // Many touch without crossing.
+            assert!(count(&touching.meet) > count(&truth) + 50 && count(&truth) > 50);
+        }
+    }
+    let moller = Query::from(Discrete::by(TriangleTest::Moller).with_only_crossing(true));
+    let refused = ask_triangles(&support::engine(), &pairs, &moller, Stored::F64).expect_err("refused");
+    assert!(refused.to_string().contains("cannot use the solver moller"), "{refused}");
 }
 
 /// On a grid of three points a side most triangles touch or are in one plane: more are left to

@@ -8,6 +8,7 @@
 
 mod adjacent;
 mod cases;
+mod crossing;
 mod cubic;
 mod cubic_bounds;
 mod discrete;

@@ -51,6 +51,19 @@ class Vtp(unittest.TestCase):
             self.assertGreater(len(rows), 10, question)
             self.assertEqual(differences(mesh, rows), [], question)
 
+    def test_curves_are_read(self):
+        mesh, rows = self.both("--scene", "soup", "--triangles", "300", "--seed", "3")
+        self.assertGreater(len(rows), 10)
+        crossing = [row for row in rows if row["kind"] == "crossing"]
+        segments = int(sum(mesh.get_cell(at).n_points - 1 for at in range(mesh.n_cells)))
+        self.assertEqual((segments, len(crossing)), (len(rows), len(rows)))
+        for at in range(mesh.n_cells):
+            cell = mesh.get_cell(at)
+            for from_, to in zip(cell.point_ids, cell.point_ids[1:]):
+                row = rows[int(mesh.point_data["row"][from_])]
+                ends = {tuple(float(row[f"{axis}_{end}"]) for axis in "xyz") for end in "01"}
+                self.assertEqual({tuple(mesh.points[from_]), tuple(mesh.points[to])}, ends)
+
     def test_a_difference_is_noticed(self):
         mesh, rows = self.both("--scene", "soup-moving", "--triangles", "300")
         for column, value in [("toi", "0.123"), ("feature_a", "9999"), ("x_b", "77"), ("normal_z", "2"), ("status", "none"), ("kind", "tt")]:

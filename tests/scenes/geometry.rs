@@ -122,7 +122,7 @@ fn contacts_are_where_their_geometry_says() {
         let (mut detector, found) = met(certified(), seed);
         let all = detector.geometry(&found).expect("geometry");
         assert_eq!(all.len(), found.len());
-        for (contact, told) in found.contacts().iter().zip(&all) {
+        for (contact, told) in found.contacts().iter().zip(all.contacts()) {
             let names = (contact.kind, contact.bodies, [contact.feature_a, contact.feature_b]);
             assert_eq!(fault(&detector, names, contact.toi, told), None, "{contact:?}, {told:?}");
             // Early by what it takes to come nearer by the tolerance, or less.
@@ -139,7 +139,7 @@ fn near_pairs_are_where_their_geometry_says() {
         let (mut detector, found) = met(Query::near(0.05), seed);
         let all = detector.geometry(&found).expect("geometry");
         assert!(found.len() > 100);
-        for (pair, told) in found.near().iter().zip(&all) {
+        for (pair, told) in found.near().iter().zip(all.contacts()) {
             let names = (pair.kind, pair.bodies, [pair.feature_a, pair.feature_b]);
             assert_eq!(fault(&detector, names, 0.0, told), None, "{pair:?}, {told:?}");
             assert!((told.distance - pair.squared_distance.sqrt()).abs() < 1e-12, "{pair:?}, {told:?}");
@@ -158,7 +158,7 @@ fn a_wrong_geometry_is_noticed() {
     let (contact, told) = found
         .contacts()
         .iter()
-        .zip(&all)
+        .zip(all.contacts())
         .find(|(c, _)| c.toi > 0.1 && c.kind == Kind::Vf)
         .expect("a contact");
     let names = (contact.kind, contact.bodies, [contact.feature_a, contact.feature_b]);
@@ -203,11 +203,7 @@ fn geometry_goes_by_what_was_placed() {
     let found = detector.frame(&[(id, Motion::OnDevice(DeviceMotion::Step(rows)))]).expect("an answer");
     assert_eq!(detector.geometry(&found).expect("geometry"), wanted);
     // Answers without features are refused, whether or not anything was found.
-    for (query, name) in [
-        (Query::discrete(), "a discrete query"),
-        (Query::earliest(), "an earliest query"),
-        (Query::distance(), "a distance query"),
-    ] {
+    for (query, name) in [(Query::earliest(), "an earliest query"), (Query::distance(), "a distance query")] {
         let mut own = OneQuery::new(engine(), scene.clone(), query).expect("a detector");
         for found in [own.detect().expect("an answer"), nearmiss::Contacts::none(query)] {
             let error = own.geometry(&found).expect_err("no features");

@@ -82,7 +82,7 @@ fn bodies_that_move_are_divided_anew_and_found_alike() {
         }
         // One of the three counts every access, and is slower by far: that is uneven.
         assert!(tiles[1..].iter().any(|later| *later != tiles[0]), "{query:?}: {tiles:?}");
-        let geometry = |want: Vec<nearmiss::contacts::ContactGeometry>| format!("{want:?}");
+        let geometry = |want: nearmiss::contacts::Geometry| format!("{want:?}");
         let (want, found) = (one.detect().expect("again"), several.in_turn().detect().expect("again"));
         is_the_same(&want, &found, "in turn");
         let mut clones = OneQueryOnSeveral::new(clones, scene.scene.clone(), query).expect("detectors");
@@ -94,7 +94,7 @@ fn bodies_that_move_are_divided_anew_and_found_alike() {
                 is_the_same(&want, &found, "clones of one device");
             }
         }
-        if matches!(query, Query::Continuous(_) | Query::Near(_)) {
+        if matches!(query, Query::Continuous(_) | Query::Near(_) | Query::Discrete(_)) {
             assert_eq!(
                 geometry(one.geometry(&want).expect("points")),
                 geometry(one.geometry(&found).expect("points"))

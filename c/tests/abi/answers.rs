@@ -1,7 +1,7 @@
 //! Every query, through the interface and by the library itself.
 
 use super::*;
-use nearmiss::contacts::Kind;
+use nearmiss::contacts::{Kind, Part};
 use nearmiss::device::Backend;
 use nearmiss::scene::{BodyId, CollisionFilter, Motion, Pose, Scene};
 use nearmiss::{Contacts, Detector, Device, Mesh, Query};
@@ -109,10 +109,21 @@ fn answers_are_the_librarys() {
             nearmiss_detector_geometry(Some(&mut detector), Some(&mut answer), to, n, error)
         });
         assert_eq!(shown.is_ok(), matches!(number, 1 | 3));
+        let meetings = list(|to, n, error| {
+            nearmiss_detector_pair_geometry(Some(&mut detector), Some(&mut answer), to, n, error)
+        });
+        assert_eq!(meetings.is_ok(), number == 0);
         let wanted = by_library.geometry(&found);
-        assert_eq!(wanted.is_ok(), shown.is_ok());
-        for (c, own) in shown.iter().flat_map(|all| all.iter()).zip(wanted.iter().flatten()) {
+        assert_eq!(wanted.is_ok(), matches!(number, 0 | 1 | 3));
+        let wanted = wanted.unwrap_or_default();
+        for (c, own) in shown.iter().flat_map(|all| all.iter()).zip(wanted.contacts()) {
             assert_eq!(c.distance, own.distance);
+        }
+        assert_eq!(meetings.as_ref().map_or(0, |all| all.len()), wanted.pairs().len());
+        for (c, own) in meetings.iter().flat_map(|all| all.iter()).zip(wanted.pairs()) {
+            assert_eq!((c.kind as u32, c.error), (own.kind as u32, own.error));
+            assert_eq!(Some(c.ends), own.ends);
+            assert_eq!(Some(c.parts), own.parts.map(|ends| ends.map(|two| two.map(Part::number))));
         }
         let all: Vec<Row> = match number {
             1 => contacts.expect("contacts").iter().map(Row::from).collect(),

@@ -190,6 +190,7 @@ fn a_bad_query_is_refused() {
     assert_eq!(asked(0, |query| query.research.bounding_volume = c"obb".as_ptr()), Ok(()));
     assert_eq!(asked(0, |query| query.rebuild = NearmissRebuild::NEARMISS_REBUILD_MANUAL as u32), Ok(()));
     assert_eq!(asked(0, |query| query.adjacent = 1), Ok(()));
+    assert_eq!(asked(0, |query| query.only_crossing = 1), Ok(()));
     let mut bad = |kind, change: fn(&mut NearmissQuery), says: &str| {
         refused(asked(kind, change), NEARMISS_INVALID_ARGUMENT, says);
     };
@@ -206,6 +207,8 @@ fn a_bad_query_is_refused() {
     bad(0, |query| query.tolerance = 0.1, "tolerance has no meaning in a discrete query");
     bad(3, |query| query.max_iterations = 1, "max_iterations has no meaning in a near query");
     bad(1, |query| query.adjacent = 1, "adjacent has no meaning in a continuous query");
+    bad(3, |query| query.only_crossing = 1, "only_crossing has no meaning in a near query");
+    bad(0, |query| query.only_crossing = 2, "only_crossing is no flag, got 2");
     bad(0, |query| query.adjacent = 2, "adjacent is no flag, got 2");
     bad(0, |query| query.rebuild = 2, "rebuild of the query is unknown, got 2");
     bad(

@@ -77,7 +77,11 @@ fn detect(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
     if query.distance {
         given.none_of(&OF_STEPS, "the distance at t = 0 has no such limit", of_steps)?;
         let why = "a distance is between bodies, never within one";
-        given.none_of(&["adjacent", "no_self_collision"], why, "remove it, or use --discrete")?;
+        given.none_of(
+            &["adjacent", "only_crossing", "no_self_collision"],
+            why,
+            "remove it, or use --discrete",
+        )?;
         given.none_of(&["traversal"], "a distance has its own walk", "remove it")?;
         given.none_of(&["file_faces"], "the nearest points are weights of a triangle", "remove it")?;
     }
@@ -85,6 +89,7 @@ fn detect(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
         given.none_of(&OF_STEPS, "the distances at t = 0 have no such limit", of_steps)?;
         let why = "features of adjacent triangles are always tested";
         given.none_of(&["adjacent"], why, "remove it, or use --discrete")?;
+        given.none_of(&["only_crossing"], "near features do not show it", "remove it, or use --discrete")?;
         given.none_of(&["file_faces"], "the nearest points are weights of a triangle", "remove it")?;
     }
     if query.with.is_empty() {

@@ -42,6 +42,12 @@ pub struct QueryArgs {
     /// They are reported if they meet beyond the vertices that they share.
     #[arg(long)]
     pub adjacent: bool,
+    /// Leave out triangles that touch without crossing (with --discrete)
+    ///
+    /// Triangles cross if their insides share a point and no plane holds both. A wall that stands on a
+    /// floor touches it.
+    #[arg(long)]
+    pub only_crossing: bool,
     /// Skip the count of triangles that cross at the start of the step
     #[arg(long, conflicts_with_all = ["discrete", "near", "distance"])]
     pub assume_free: bool,

@@ -46,9 +46,13 @@ impl DetectArgs {
         }
         let query = self.of_kind(kind, solver);
         query.check()?;
-        self.places(kind)?;
+        self.places(kind, solver.is_certain())?;
         if self.query.adjacent && solver != Solver::Exact {
             let what = format!("--adjacent cannot be used with a {kind} query by {solver}");
+            return refused(what, "use --discrete with the solver exact");
+        }
+        if self.query.only_crossing && solver != Solver::Exact {
+            let what = format!("--only-crossing cannot be used with a {kind} query by {solver}");
             return refused(what, "use --discrete with the solver exact");
         }
         Ok(query)
@@ -65,7 +69,10 @@ impl DetectArgs {
             }
             (None, Some(solver)) => Continuous::by(self.limited(solver)).assuming_free(assume_free).into(),
             (None, None) if solver == Solver::Moller => Discrete::by(TriangleTest::Moller).into(),
-            (None, None) => Discrete::default().with_adjacent(self.query.adjacent).into(),
+            (None, None) => Discrete::default()
+                .with_adjacent(self.query.adjacent)
+                .with_only_crossing(self.query.only_crossing)
+                .into(),
         };
         query.with_search(self.search())
     }
@@ -88,12 +95,16 @@ impl DetectArgs {
     }
 
     /// Refuses places of contacts for a query that has none.
-    fn places(&self, kind: QueryKind) -> Result<(), Error> {
+    fn places(&self, kind: QueryKind, is_certain: bool) -> Result<(), Error> {
         let vtp = self.writes_vtp();
         match kind {
-            QueryKind::Discrete | QueryKind::Earliest if vtp || self.out.geometry => refused(
+            QueryKind::Earliest if vtp || self.out.geometry => refused(
                 format!("a .vtp and --geometry need points, and a {kind} query has none"),
                 "use --continuous or --near, or --out-mesh for a coloured mesh",
+            ),
+            QueryKind::Discrete if !is_certain && (vtp || self.out.geometry) => refused(
+                "a .vtp and --geometry need common points, and pairs by the solver moller may have none",
+                "remove --solver moller",
             ),
             _ if vtp && self.out.geometry => {
                 refused("--geometry has no effect: a .vtp always has it", "remove it")

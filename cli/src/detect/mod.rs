@@ -11,7 +11,7 @@ use crate::report::{self, FileFaces, Format, Report};
 use crate::rows::numbered;
 use crate::sequence::{self, Sequence, is_scene, steps};
 use nearmiss::Stages;
-use nearmiss::contacts::{ContactGeometry, Contacts, Note, Rows};
+use nearmiss::contacts::{Contacts, Curves, Geometry, Note, Rows, crossing_curves};
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
 use nearmiss::query::Query;
@@ -186,10 +186,10 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
     if let Some(all) = &sequence {
         summary.frames = all.frames;
     }
-    let geometry = geometry(args, &mut detector, &contacts)?;
+    let places = places(args, &mut detector, &contacts)?;
     if let Some(target) = painted {
         let (mesh, colours) =
-            paint::paint(detector.scene().bodies(), 0.0, &contacts, geometry.as_deref().unwrap_or_default())?;
+            paint::paint(detector.scene().bodies(), 0.0, &contacts, places.geometry.contacts())?;
         target.write(|mut out| encode_ply_coloured(&mesh, &mut out, &colours).map_err(|e| e.to_string()))?;
     }
     summary.notes.splice(..0, of_files.into_iter().map(|text| Note::File { text }));
@@ -199,8 +199,8 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
             Some(all) => all.names.clone(),
             None => numbered(detector.scene().bodies().len()),
         };
-        let geometry = geometry.as_deref().filter(|_| args.out.geometry || format == Format::Vtp);
-        report::write(target, format, &contacts, &told, (faces.as_ref(), names.as_deref()), geometry)?;
+        let places = (args.out.geometry || format == Format::Vtp).then_some(&places);
+        report::write(target, format, &contacts, &told, (faces.as_ref(), names.as_deref()), places)?;
     }
     if args.out.json {
         let text = serde_json::to_string(&told).map_err(|e| Error::Bug { what: e.to_string() })?;
@@ -213,20 +213,37 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The places of contacts, if a file needs them.
+/// The places of contacts.
+#[derive(Default)]
+pub struct Places {
+    /// Geometry of each row; empty if no file needs it.
+    pub geometry: Geometry,
+    /// The curves in which triangles cross, for a `.vtp`.
+    pub curves: Curves,
+}
+
+/// The places of contacts that a file needs.
 ///
 /// # Errors
 /// [`Error::OutOfMemory`]; those of the device.
-pub fn geometry(
-    args: &DetectArgs,
-    detector: &mut OneQuery,
-    found: &Contacts,
-) -> Result<Option<Vec<ContactGeometry>>, Error> {
-    let is_wanted = args.out.geometry || args.writes_vtp() || args.out.out_mesh.is_some();
-    // Triangles and a time have none; a file of the nearest triangles takes their points from the
-    // answer.
-    let has_any = matches!(found.rows, Rows::Contacts(_) | Rows::Near(_));
-    if is_wanted && has_any { detector.geometry(found).map(Some) } else { Ok(None) }
+pub fn places(args: &DetectArgs, detector: &mut OneQuery, found: &Contacts) -> Result<Places, Error> {
+    let is_written = args.out.geometry || args.writes_vtp();
+    let is_needed = match &found.rows {
+        // A coloured mesh has the triangles of features, by their vertices.
+        Rows::Contacts(_) | Rows::Near(_) => is_written || args.out.out_mesh.is_some(),
+        Rows::Pairs(_) => is_written,
+        // A time has none; a file of the nearest triangles takes their points from the answer.
+        Rows::Earliest(_) | Rows::Distance(_) => false,
+    };
+    if !is_needed {
+        return Ok(Places::default());
+    }
+    let geometry = detector.geometry(found)?;
+    let curves = match args.writes_vtp() {
+        true => crossing_curves(geometry.pairs(), detector.scene().bodies())?,
+        false => Curves::default(),
+    };
+    Ok(Places { geometry, curves })
 }
 
 /// The answer, and the times: of several runs each stage's median. The first run only warms up.

@@ -13,7 +13,7 @@ use crate::output::{Target, print, say};
 use crate::paint::{self, GREY, ORANGE, RED};
 use crate::progress::during;
 use draw::Picture;
-use nearmiss::contacts::Rows;
+use nearmiss::contacts::{Geometry, Rows};
 use nearmiss::error::Error;
 use nearmiss::memory;
 use nearmiss::words::counted;
@@ -56,15 +56,16 @@ pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
     let found = during("detecting", || detector.detect())?;
     let geometry = match &found.rows {
         Rows::Contacts(_) | Rows::Near(_) => detector.geometry(&found)?,
-        Rows::Pairs(_) | Rows::Distance(_) | Rows::Earliest(_) => Vec::new(),
+        // Triangles are coloured by their numbers.
+        Rows::Pairs(_) | Rows::Distance(_) | Rows::Earliest(_) => Geometry::default(),
     };
     let bodies = detector.scene().bodies();
     let triangles: usize = bodies.iter().map(|body| body.faces().len()).sum();
     memory::require("the picture", draw::bytes(look.size, triangles))?;
-    let (mesh, mut colours) = paint::paint(bodies, look.time, &found, &geometry)?;
+    let (mesh, mut colours) = paint::paint(bodies, look.time, &found, geometry.contacts())?;
     let [red, orange] = [RED, ORANGE].map(|of| colours.iter().filter(|colour| **colour == of).count());
     let points = mesh.positions().to_f64();
-    let marks = marks::of(bodies, &points, &found, &geometry);
+    let marks = marks::of(bodies, &points, &found, geometry.contacts());
     let own = shade::colours(bodies, mesh.faces(), points.len());
     let met = |(at, colour): (usize, &[u8; 3])| (*colour != GREY).then_some(at as u32);
     let met: Vec<u32> = colours.iter().enumerate().filter_map(met).collect();

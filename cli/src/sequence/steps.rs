@@ -2,13 +2,13 @@
 
 use super::Sequence;
 use crate::args::DetectArgs;
-use crate::detect::{geometry, promise, text};
+use crate::detect::{Places, places, promise, text};
 use crate::output::{Target, print};
 use crate::progress::during;
 use crate::report::{FileFaces, Format, Report};
 use crate::rows::{Columns, JsonRows};
 use crate::vtp::Vtp;
-use nearmiss::contacts::{ContactGeometry, Contacts, Note};
+use nearmiss::contacts::{Contacts, Note};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::query::Query;
@@ -138,8 +138,8 @@ impl Steps<'_> {
         for step in 0..self.all.steps(at_rest) {
             let found = during(format!("step {step}"), || self.ask(step, at_rest))?;
             let report = self.report(step, &found);
-            let geometry = geometry(self.args, &mut self.detector, &found)?;
-            self.put(&mut out, &found, &report, geometry.as_deref()).map_err(Stop::File)?;
+            let places = places(self.args, &mut self.detector, &found)?;
+            self.put(&mut out, &found, &report, &places).map_err(Stop::File)?;
             total.add(step, &found);
             if self.args.out.json {
                 told.push(report);
@@ -194,17 +194,12 @@ impl Steps<'_> {
         Report { step: Some(step), summary }
     }
 
-    fn put(
-        &self,
-        out: &mut Out,
-        found: &Contacts,
-        report: &Report,
-        geometry: Option<&[ContactGeometry]>,
-    ) -> Result<(), String> {
+    fn put(&self, out: &mut Out, found: &Contacts, report: &Report, places: &Places) -> Result<(), String> {
         if matches!(out, Out::Nowhere) {
             return Ok(());
         }
         let named = self.faces.as_ref().map(|faces| faces.name(&found.rows));
+        let geometry = self.args.out.geometry.then_some(&places.geometry);
         let (answer, names) = (named.as_ref().unwrap_or(&found.rows), self.all.names.as_deref());
         match out {
             Out::Nowhere => Ok(()),
@@ -216,7 +211,7 @@ impl Steps<'_> {
                 columns.rows(csv, answer)
             }
             Out::Vtp(vtp, _) => {
-                vtp.add(report.step, answer, geometry.unwrap_or_default());
+                vtp.add(report.step, answer, places);
                 Ok(())
             }
             Out::Json(out) => {

@@ -74,11 +74,51 @@ fn what_touches_is_a_vertex_and_steps_are_told_apart() {
     assert!(folder.read("a.vtp").contains("NumberOfVerts=\"2\" NumberOfLines=\"0\""));
 }
 
+/// A floor of two triangles, a post through it, and one that stands on it.
+const POSTS: &str = "v 0 0 0\nv 8 0 0\nv 8 8 0\nv 0 8 0\nv 1 3 -1\nv 2 3 1\nv 1 3 1\nv 5 2 0\nv 6 2 0\nv 5 2 2\n\
+                     f 1 2 3\nf 1 3 4\nf 5 6 7\nf 8 9 10\n";
+
+#[test]
+fn triangles_have_kinds_segments_and_curves() {
+    let folder = Folder::new("curves");
+    let mesh = folder.write("mesh.obj", POSTS);
+    let asked = ["detect", &mesh, "--backend", "cpu", "--out"];
+    ok(&[&asked[..], &[&folder.path("a.csv"), "--geometry"]].concat());
+    let rows = "tri_a,tri_b,kind,x_0,y_0,z_0,x_1,y_1,z_1,error\n\
+                0,3,segment,5,2,0,6,2,0,0\n1,2,crossing,1.5,3,0,1,3,0,0.00000000000000033306690738754696\n";
+    assert_eq!(folder.read("a.csv"), rows);
+    ok(&[&asked[..], &[&folder.path("a.json"), "--geometry"]].concat());
+    let told: serde_json::Value = serde_json::from_str(&folder.read("a.json")).expect("JSON");
+    let geometry = &told["contacts"][0]["geometry"];
+    assert_eq!((&geometry["kind"], &geometry["error"]), (&"segment".into(), &0.0.into()), "{told}");
+    assert_eq!(geometry["parts"], serde_json::json!([[0, 4], [0, 5]]), "{told}");
+    ok(&[&asked[..], &[&folder.path("a.vtp")]].concat());
+    let vtp = folder.read("a.vtp");
+    assert!(vtp.contains("NumberOfPoints=\"4\" NumberOfVerts=\"0\" NumberOfLines=\"2\""), "{vtp}");
+    assert_eq!(array(&vtp, "points"), [1.5, 3.0, 0.0, 1.0, 3.0, 0.0, 5.0, 2.0, 0.0, 6.0, 2.0, 0.0]);
+    assert_eq!((array(&vtp, "kind"), array(&vtp, "group")), (vec![0.0, 2.0], vec![0.0, -1.0]));
+    assert_eq!((array(&vtp, "row"), array(&vtp, "is_closed")), (vec![1.0, 1.0, 0.0, 0.0], vec![0.0, 0.0]));
+    assert!(ok(&["detect", &mesh, "--backend", "cpu", "--only-crossing"]).starts_with("1 contact; "));
+    ok(&[&asked[..], &[&folder.path("b.csv"), "--only-crossing"]].concat());
+    assert_eq!(folder.read("b.csv"), "tri_a,tri_b\n1,2\n");
+    // Frames: each has its curves.
+    ok(&["detect", &mesh, &mesh, &mesh, "--discrete", "--backend", "cpu", "--out", &folder.path("c.vtp")]);
+    let vtp = folder.read("c.vtp");
+    assert_eq!(array(&vtp, "step"), [0.0, 0.0, 1.0, 1.0, 2.0, 2.0]);
+}
+
 #[test]
 fn files_of_places_are_refused_where_there_are_none() {
     let grid = ["detect", "--scene", "grid", "--triangles", "16"];
     for more in [&["--out", "a.vtp"][..], &["--out", "a.csv", "--geometry"]] {
-        assert!(refused(2, &[&grid[..], more].concat()).contains("use --continuous or --near"));
+        let first = [&grid[..], &["--earliest"], more].concat();
+        assert!(refused(2, &first).contains(if more.len() == 2 {
+            "use --continuous or --near"
+        } else {
+            "--earliest"
+        }));
+        let by_float = [&grid[..], &["--solver", "moller"], more].concat();
+        assert!(refused(2, &by_float).contains("remove --solver moller"));
     }
     let near = [&grid[..], &["--near", "1", "--out", "a.vtp", "--geometry"]].concat();
     assert!(refused(2, &near).contains("--geometry has no effect"));

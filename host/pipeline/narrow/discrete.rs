@@ -20,7 +20,8 @@ use nearmiss_kernels::stage::narrow::certain::LANES_A_PAIR;
 
 /// The lists of a discrete query.
 pub struct DiscreteNarrow {
-    test: TriangleTest,
+    /// Flags of the exact test.
+    flags: DiscreteFlags,
     /// Pairs that meet.
     pub contacts: List<Pair>,
     /// Pairs that each filter left to the next, the last one to exact signs; only for the exact
@@ -48,7 +49,14 @@ impl DiscreteNarrow {
             TriangleTest::Moller => {}
         }
         let contacts = List::new(device, "contacts", counter::CONTACTS, few)?;
-        Ok(DiscreteNarrow { test, contacts, uncertain, ordered: None })
+        let flags = DiscreteFlags::KEEP_ADJACENT.when(test.has_adjacent());
+        Ok(DiscreteNarrow { flags, contacts, uncertain, ordered: None })
+    }
+
+    /// Returns the lists of a query that leaves out what touches without crossing, or not.
+    #[must_use]
+    pub fn only_crossing(self, is_only: bool) -> Self {
+        DiscreteNarrow { flags: self.flags | DiscreteFlags::ONLY_CROSSING.when(is_only), ..self }
     }
 
     /// Returns the lists that the one step fills.
@@ -81,7 +89,7 @@ impl DiscreteNarrow {
             pairs,
             contacts: self.contacts.output(given.counters),
             uncertain: uncertain.map_or(Output::EMPTY, |list| list.output(given.counters)),
-            flags: DiscreteFlags::KEEP_ADJACENT.when(self.test.has_adjacent()),
+            flags: self.flags,
             pad: 0,
         };
         let (device, capacity) = (given.device, given.pairs.room() as usize);
@@ -102,7 +110,7 @@ impl DiscreteNarrow {
 
 impl DiscreteNarrow {
     /// Launches the exact test over candidates of instances, whose vertices are placed as they are
-    /// read. Flags do not matter: two bodies have no common vertex.
+    /// read. Two bodies have no common vertex.
     fn decide_placed<R: Precision>(
         &self,
         given: &NarrowContext<R>,
@@ -116,7 +124,7 @@ impl DiscreteNarrow {
                 pairs,
                 contacts: self.contacts.output(given.counters),
                 uncertain,
-                flags: DiscreteFlags::NONE,
+                flags: DiscreteFlags::ONLY_CROSSING.when(self.flags.has(DiscreteFlags::ONLY_CROSSING)),
                 pad: 0,
             },
             tables,

@@ -150,7 +150,9 @@ pub fn narrow<R: Precision>(
     few: usize,
 ) -> Result<Box<dyn Narrow<R>>, Error> {
     let mut narrow: Box<dyn Narrow<R>> = match query {
-        Query::Discrete(query) => Box::new(DiscreteNarrow::new::<R>(device, query.test, few)?),
+        Query::Discrete(query) => {
+            Box::new(DiscreteNarrow::new::<R>(device, query.test, few)?.only_crossing(query.only_crossing))
+        }
         Query::Continuous(query) => {
             let narrow = ContinuousNarrow::all(device, query.solver, few)?;
             Box::new(if query.assume_free { narrow } else { narrow.checking_start::<R>(device, few / 4)? })

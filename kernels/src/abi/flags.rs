@@ -94,6 +94,8 @@ flags! {
     DiscreteFlags {
         /// Pairs that share a vertex are tested beyond it.
         KEEP_ADJACENT,
+        /// Only pairs that cross are listed, none that touch.
+        ONLY_CROSSING,
     }
     /// Flags of a rung: [`RungArgs`](super::RungArgs).
     RungFlags {

@@ -5,6 +5,7 @@
 //! | [`moller`] | discrete, in plain floats; the paper's | can miss |
 //! | [`tri_tri`] on signs of [`orient`] | discrete, floats with a bound | right or uncertain |
 //! | [`at_once`], all of those signs | discrete, floats with a bound | right or uncertain |
+//! | [`crossing`] on signs of either | discrete, whether they cross | as the signs |
 //! | [`planes`], in f32 with an error | discrete | apart or uncertain |
 //! | [`tri_tri`] on signs of [`exact`] | discrete, in integers | always right |
 //! | [`cubic`] | continuous, the coplanarity cubic; the paper's | can miss |
@@ -19,6 +20,7 @@
 pub mod adjacent;
 pub mod at_once;
 pub mod balls;
+pub mod crossing;
 pub mod cubic;
 pub mod direction;
 pub mod exact;

@@ -6,6 +6,7 @@
 //! polynomials, as algebraic numbers. Two features at one time ([`near`]): fractions of integers.
 //! Two features of turning bodies ([`turning`]): enclosures of the motion in 106 bits.
 
+pub mod crossing;
 mod motion;
 pub mod near;
 pub mod simplex;

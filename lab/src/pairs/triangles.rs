@@ -17,7 +17,7 @@ use nearmiss_kernels::abi::{self, Pair, Point, Span, counter};
 /// Answers to a number of triangle pairs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriangleAnswers {
-    /// Whether they share a point, in the pairs' order.
+    /// Whether they share a point, or cross if the query is about that, in the pairs' order.
     pub meet: Vec<bool>,
     /// Number of entries in the list of meeting pairs: each pair must be appended once.
     pub listed: u64,
@@ -47,7 +47,7 @@ pub fn ask_triangles(
             advice: "use a discrete query, or `ask` for features in motion".into(),
         });
     };
-    let test = discrete.chosen();
+    let choice = (discrete.chosen(), discrete.is_only_crossing());
     let mut all = TriangleAnswers::default();
     for pairs in pairs.chunks(AT_ONCE) {
         let points: Vec<[f64; 3]> = pairs.iter().flatten().flatten().copied().collect();
@@ -70,8 +70,8 @@ pub fn ask_triangles(
         let faces = (0..2 * pairs.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
         let mesh = Mesh::new("triangle pairs", positions, faces)?;
         let some = match stored {
-            Stored::F64 => some::<f64>(device, &mesh, test)?,
-            Stored::F32 => some::<f32>(device, &mesh, test)?,
+            Stored::F64 => some::<f64>(device, &mesh, choice)?,
+            Stored::F32 => some::<f32>(device, &mesh, choice)?,
         };
         all.meet.extend(some.meet);
         all.listed += some.listed;
@@ -82,7 +82,11 @@ pub fn ask_triangles(
 }
 
 /// Tests one batch: triangles 2 i and 2 i + 1 are pair i.
-fn some<R: Precision>(device: &Device, mesh: &Mesh, test: TriangleTest) -> Result<TriangleAnswers, Error> {
+fn some<R: Precision>(
+    device: &Device,
+    mesh: &Mesh,
+    (test, only_crossing): (TriangleTest, bool),
+) -> Result<TriangleAnswers, Error> {
     let count = mesh.faces().len() / 2;
     let points: Vec<Point<R>> = R::points(mesh.positions()).map(Point::from).collect();
     let (points, faces) = (device.upload(&points)?, device.upload(mesh.faces())?);
@@ -90,7 +94,7 @@ fn some<R: Precision>(device: &Device, mesh: &Mesh, test: TriangleTest) -> Resul
     let mut list = List::new(device, "triangle pairs", counter::PAIRS, count)?;
     let mut counts = Counts::default();
     list.put(&pairs, &mut counts)?;
-    let mut narrow = DiscreteNarrow::new::<R>(device, test, count)?;
+    let mut narrow = DiscreteNarrow::new::<R>(device, test, count)?.only_crossing(only_crossing);
     let mut counters = FrameCounters::new(device)?;
     // Until no list was too short.
     let (counters, ms) = loop {

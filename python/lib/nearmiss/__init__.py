@@ -29,6 +29,7 @@ from ._native import (
     Body,
     Contacts,
     Continuous,
+    Curves,
     Detector,
     Device,
     DeviceAnswer,
@@ -41,6 +42,7 @@ from ._native import (
     Near,
     NearestTriangles,
     NearPairs,
+    PairGeometry,
     Pose,
     PoseStep,
     Query,
@@ -59,7 +61,7 @@ from .errors import (
     NearmissError,
     OutOfMemory,
 )
-from .kinds import Closest, Kind, Status
+from .kinds import Closest, Kind, PairKind, Status
 from .shortcuts import contacts, near, self_intersections, time_of_impact
 
 __all__ = [
@@ -69,6 +71,7 @@ __all__ = [
     "Closest",
     "Contacts",
     "Continuous",
+    "Curves",
     "Detector",
     "Device",
     "DeviceAnswer",
@@ -89,6 +92,8 @@ __all__ = [
     "NearestTriangles",
     "NearmissError",
     "OutOfMemory",
+    "PairGeometry",
+    "PairKind",
     "Pose",
     "PoseStep",
     "Query",

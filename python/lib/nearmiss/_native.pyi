@@ -1,5 +1,5 @@
 from os import PathLike
-from typing import Any, Generic, Iterable, Literal, Mapping, Tuple, TypeVar, Union
+from typing import Any, Generic, Iterable, Literal, Mapping, Tuple, TypeVar, Union, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -309,7 +309,7 @@ class Discrete(Query["TrianglePairs"]):
     - `adjacent`: also test triangles with a common vertex, for points beyond that vertex or edge.
     """
 
-    def __new__(cls, *, adjacent: bool = False) -> Discrete: ...
+    def __new__(cls, *, adjacent: bool = False, only_crossing: bool = False) -> Discrete: ...
 
 class Continuous(Query["Contacts"]):
     """Query for all contacts of a step, with certified times. Answer: Contacts.
@@ -647,6 +647,56 @@ class Geometry:
     def normals(self) -> NDArray[np.float64]:
         """(k, 3) float64: unit vectors from feature b to feature a; zeros if no direction is defined."""
 
+class PairGeometry:
+    """How"""
+
+    def __len__(self) -> int: ...
+
+    @property
+    def kind(self) -> NDArray[np.uint8]:
+        """K"""
+
+    @property
+    def ends(self) -> NDArray[np.float64]:
+        """K"""
+
+    @property
+    def errors(self) -> NDArray[np.float64]:
+        """K"""
+
+    @property
+    def parts(self) -> NDArray[np.uint8]:
+        """K"""
+
+class Curves:
+    """Curves"""
+
+    def __len__(self) -> int: ...
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """K"""
+
+    @property
+    def starts(self) -> NDArray[np.int64]:
+        """K"""
+
+    @property
+    def is_closed(self) -> NDArray[np.bool_]:
+        """K"""
+
+    @property
+    def rows(self) -> NDArray[np.uint32]:
+        """K"""
+
+    @property
+    def groups(self) -> NDArray[np.uint32]:
+        """K"""
+
+    @property
+    def row_groups(self) -> NDArray[np.int64]:
+        """K"""
+
 class DeviceArray:
     """Array in the memory of the device.
 
@@ -796,7 +846,7 @@ class Detector:
         - `distance`: a length above 0, in the unit of the vertices.
         """
 
-    def discrete(self, *, adjacent: bool = False) -> TrianglePairs:
+    def discrete(self, *, adjacent: bool = False, only_crossing: bool = False) -> TrianglePairs:
         """Return triangles that share a point at t = 0: the answer to Discrete.
 
         - `adjacent`: also test triangles with a common vertex, for points beyond that vertex or edge.
@@ -841,13 +891,14 @@ class Detector:
     def distance(self) -> NearestTriangles:
         """Return the nearest two bodies at t = 0, and their distance: the answer to Distance."""
 
-    def geometry(self, answer: Contacts | NearPairs) -> Geometry:
-        """Return vertices, weights, points and normals of an answer's rows.
+    @overload
+    def geometry(self, answer: Contacts | NearPairs) -> Geometry: ...
+    @overload
+    def geometry(self, answer: TrianglePairs) -> PairGeometry:
+        """Return"""
 
-        - `answer`: Contacts or NearPairs of this detector. Bodies must not have moved since.
-
-        Raises InvalidArgumentError for other answers.
-        """
+    def curves(self, answer: TrianglePairs) -> Curves:
+        """Return"""
 
     def summary(self, answer: Answer) -> dict[str, Any]:
         """Return all figures of an answer as a dictionary, as the program prints them with --json.

@@ -12,6 +12,19 @@ class Kind(IntEnum):
     """Both features are edges."""
 
 
+class PairKind(IntEnum):
+    """How two triangles meet: the numbers in `PairGeometry.kind`."""
+
+    CROSSING = 0
+    """Their insides share a point, and no plane holds both."""
+    POINT = 1
+    """They touch in one point."""
+    SEGMENT = 2
+    """They touch in a segment: an edge is on a face or along an edge."""
+    OVERLAP = 3
+    """They overlap in one plane, in an area."""
+
+
 class Status(IntEnum):
     """Certainty of a row: the numbers in `status`."""
 

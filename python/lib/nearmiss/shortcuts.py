@@ -10,7 +10,9 @@ from .errors import InputError
 __all__ = ["contacts", "near", "self_intersections", "time_of_impact"]
 
 
-def self_intersections(vertices, faces, *, adjacent: bool = False, device: Device | None = None) -> NDArray[np.uint32]:
+def self_intersections(
+    vertices, faces, *, adjacent: bool = False, only_crossing: bool = False, device: Device | None = None
+) -> NDArray[np.uint32]:
     """Return the pairs of triangles of a mesh that share a point, by exact signs.
 
     No pair is missed, none is invented. Touching counts. Two indices at one place are two vertices: triangles on both sides of
@@ -19,12 +21,13 @@ def self_intersections(vertices, faces, *, adjacent: bool = False, device: Devic
     - `vertices`: (n, 3) numbers. float32 and float64 are used as they are, never rounded. Arrays of a GPU work too.
     - `faces`: (m, 3) integers from 0, the vertices of each triangle.
     - `adjacent`: also test triangles with a common vertex, for points beyond that vertex or edge.
+    - `only_crossing`: leave out triangles that touch without crossing.
     - `device`: default: the GPU of the array, else Device().
 
     Returns (k, 2) uint32: pairs of triangles, the smaller index first, ascending.
     Raises InputError for vertices that are not finite and for indices without a vertex.
     """
-    return _detector(vertices, faces, device).discrete(adjacent=adjacent).triangles
+    return _detector(vertices, faces, device).discrete(adjacent=adjacent, only_crossing=only_crossing).triangles
 
 
 def near(vertices, faces, distance: float, *, device: Device | None = None) -> NearPairs:

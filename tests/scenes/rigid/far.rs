@@ -1,7 +1,8 @@
 //! Far from the origin.
 
 use super::*;
-use nearmiss::contacts::Rows;
+use nearmiss::contacts::{Geometry, Rows};
+use nearmiss::research::{TriangleTest, WithSolver};
 use nearmiss_lab::oracle::{Triangle, triangles_meet};
 
 fn scene_of(bodies: &[(Mesh, Pose)]) -> Scene {
@@ -111,7 +112,10 @@ fn differences(rounded: bool) -> Vec<String> {
                 let found = detector.frame(&inputs).expect("an answer");
                 let geometry = match query {
                     Query::Continuous(_) | Query::Near(_) => detector.geometry(&found).expect("points"),
-                    _ => Vec::new(),
+                    Query::Discrete(discrete) if discrete.chosen() != TriangleTest::Moller => {
+                        detector.geometry(&found).expect("points")
+                    }
+                    _ => Geometry::default(),
                 };
                 // The straight motion of a turn is a caveat of poses alone.
                 (found.rows, geometry)

@@ -31,9 +31,9 @@ fn ask_all(detector: &mut OneQuery, what: &str) {
         let found = detector.collect().expect(what);
         is_nothing(&found, what);
         assert_eq!(detector.summary(&found).contacts, 0);
-        let has_features = matches!(found.rows, Rows::Contacts(_) | Rows::Near(_));
+        let has_rows = matches!(found.rows, Rows::Contacts(_) | Rows::Near(_) | Rows::Pairs(_));
         let geometry = detector.geometry(&found);
-        assert!(if has_features { geometry.expect(what).is_empty() } else { geometry.is_err() }, "{what}");
+        assert!(if has_rows { geometry.expect(what).is_empty() } else { geometry.is_err() }, "{what}");
     }
     detector.download_positions().expect(what);
     detector.plan().expect(what);

@@ -9,6 +9,7 @@
 //! Before   pairs = those that the kernel before did not decide. Positions are finite.
 //! After    contacts ∪= {(a, b) in pairs : closed triangles share a point}; with a common vertex,
 //!          beyond it. `wide` leaves some out and lists them.
+//!          With `ONLY_CROSSING`: those that cross ([`crate::prim::crossing`]).
 //! Room     contacts, uncertain: counted past the end, grown, run again.
 //! Cost     a sign takes `wide` some 60 operations in f64, `exact` thousands on integers.
 
@@ -18,6 +19,7 @@ use crate::abi::{DiscreteArgs, DiscreteFlags, Pair};
 use crate::exec::{Block, Lane, Slot};
 use crate::math::{Real, Vec3};
 use crate::prim::adjacent::{Shared, meets_beyond_shared};
+use crate::prim::crossing::crosses;
 use crate::prim::tri_tri::{Certain, SIGNS, Signs, Wide, decided, meets, points_of_sign};
 
 /// Few pairs: at most so many. More have a lane a pair, and fill the machine.
@@ -49,7 +51,9 @@ pub fn wide<F: Frame<f32>, B: Block>(block: &mut B, args: &F::Args) {
             let i = base + lane.lane();
             *verdicts.of(lane) = if i < count {
                 let (pair, [x, y], shared) = given::<f32, F, _>(lane, args, i);
+                let is_only_crossing = lists.flags.has(DiscreteFlags::ONLY_CROSSING);
                 let verdict = match shared {
+                    _ if is_only_crossing => cross::<f32, Wide>(x, y),
                     Shared::Nothing => meets::<f32, Wide>(&x, &y),
                     shared => beyond(x, y, shared),
                 };
@@ -74,6 +78,12 @@ fn beyond(p: [Vec3<f32>; 3], q: [Vec3<f32>; 3], shared: Shared) -> Option<bool> 
     meets_beyond_shared::<f32, Wide>(&p, &q, shared)
 }
 
+/// Tests whether a pair crosses. By value and out of line, as [`beyond`].
+#[inline(never)]
+fn cross<R: Real, S: Signs<R>>(p: [Vec3<R>; 3], q: [Vec3<R>; 3]) -> Option<bool> {
+    crosses::<R, S>(&p, &q)
+}
+
 /// Exact signs, for the pairs that the filters left uncertain: some thousand operations each.
 pub fn exact<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &F::Args) {
     let lists = F::lists(args);
@@ -88,14 +98,19 @@ pub fn exact<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &F::Args) {
     }
     append_each(block, count, lists.contacts, |lane, i| {
         let (pair, [p, q], shared) = given::<R, F, _>(lane, args, i);
-        let meets = meets_beyond_shared::<R, Certain>(&p, &q, shared) != Some(false);
-        meets.then(|| F::contact(lane, args, pair))
+        let verdict = if lists.flags.has(DiscreteFlags::ONLY_CROSSING) {
+            cross::<R, Certain>(p, q)
+        } else {
+            meets_beyond_shared::<R, Certain>(&p, &q, shared)
+        };
+        (verdict != Some(false)).then(|| F::contact(lane, args, pair))
     });
 }
 
-/// Whether there are so few pairs that each lane takes a sign. None of them may share vertices.
+/// Whether there are so few pairs that each lane takes a sign. None of them may share vertices, and
+/// these signs do not show what crosses.
 fn are_few<R: Real>(args: &DiscreteArgs<R>, count: u32) -> bool {
-    !args.flags.has(DiscreteFlags::KEEP_ADJACENT) && count <= FEW
+    !args.flags.has(DiscreteFlags::KEEP_ADJACENT | DiscreteFlags::ONLY_CROSSING) && count <= FEW
 }
 
 /// Few pairs: a lane computes one sign. One lane of each pair takes the verdict. It computes more

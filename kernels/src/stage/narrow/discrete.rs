@@ -9,6 +9,8 @@
 //! Before   candidates are complete. Positions are finite.
 //! After    filter, certain  contacts = {(a, b) in candidates : closed triangles share a point}.
 //!          With a common vertex: beyond it.
+//!          With `ONLY_CROSSING`: those that cross ([`crate::prim::crossing`]). All contacts of
+//!          `filter` do: an edge strictly passes the inside of a triangle.
 //!          moller  contacts = the pairs that a float test accepts: it can miss and it can err.
 //!          `Start`  contacts = {(a, b) in candidates : no common vertex, closed triangles share a
 //!          point at t = 0}.
