@@ -13,7 +13,7 @@ fn options_without_an_effect_are_refused() {
     let still = "the distances at t = 0 have no such limit";
     let seedless = "has no random numbers; remove it, or use one of: balls, cloth-ball";
     let of_scenes = "no table of a single scene is measured; remove it, or add --table 6.12";
-    let table: [(&str, &[&str], &str); 69] = [
+    let table: [(&str, &[&str], &str); 72] = [
         (
             "detect",
             &["--scene", "draped", "--seed", "3"],

@@ -291,6 +291,9 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
                 let gap = self.solver.certified().filter(|certified| certified.is_apart());
                 let known = self.known(given.is_sample);
                 let numbers = (gap.map_or(0.0, Certified::listed_within), known);
+                if self.is_certified() {
+                    self.turning.reserve(given)?;
+                }
                 let pairs = match self.solver.certified() {
                     Some(certified) => self.turning.divide(given, certified)?,
                     None => given.pairs,

@@ -13,6 +13,9 @@ use nearmiss_kernels::abi::{
 };
 use nearmiss_kernels::entry::{narrow_divide, narrow_turning, narrow_turning_features};
 
+/// Candidates of each kind for which there is room at first.
+const FEW: usize = 4096;
+
 /// The lists; without room until a step has a body that may turn.
 pub struct Turning {
     /// Triangle pairs of which neither body turns.
@@ -38,6 +41,20 @@ impl Turning {
                 list("edge/edge pairs that turn", counter::EE_TURNING)?,
             ],
         })
+    }
+
+    /// Makes room for all candidates, if a body may turn: then a step in which others do has room too.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub fn reserve<R: Precision>(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
+        if given.frames.turns.is_empty() {
+            return Ok(());
+        }
+        let pairs = given.pairs.room() as usize;
+        self.straight.reserve(given.device, pairs)?;
+        self.turning.reserve(given.device, pairs)?;
+        self.candidates.iter_mut().try_for_each(|list| list.reserve(given.device, FEW))
     }
 
     /// Divides the candidates, and lists the features of those that turn. Returns the others. A
