@@ -91,7 +91,7 @@ fn paddle(angle: f64) -> Side {
     Side { phi: Vec3([0.0, 0.0, angle]), pivot: [Vec3([0.0; 3]); 2], points }
 }
 
-/// A body that moves linearly, beside one whose pivot is the origin.
+/// A body that moves linearly; the pivot of the other is the origin.
 fn moving(from: &[[f64; 3]], to: &[[f64; 3]]) -> Side {
     let at = |k: usize| [Vec3(from[k % from.len()]), Vec3(to[k % to.len()])];
     Side { phi: Vec3([0.0; 3]), pivot: [Vec3([0.0; 3]); 2], points: [at(0), at(1), at(2)] }
@@ -169,7 +169,7 @@ fn what_cannot_be_decided_is_undecided() {
     let p = Params::new(1e-6);
     let point = moving(&[[0.0, 1.0, 0.0]], &[[0.0, 1.0, 0.0]]);
     let none = |verdict: Verdict| matches!(verdict.answer(), Answer::Undecided { toi: 0.0, .. });
-    // Nothing is known of what is not finite, and without slices.
+    // Nothing is known of numbers that are not finite, of more than a full turn, and without slices.
     let no_number = moving(&[[f64::NAN, 1.0, 0.0]], &[[0.0, 1.0, 0.0]]);
     let far = moving(&[[f64::INFINITY, 1.0, 0.0]], &[[0.0, 1.0, 0.0]]);
     let turns = Side { phi: Vec3([0.0, f64::NAN, 1.0]), ..paddle(1.0) };
@@ -177,6 +177,7 @@ fn what_cannot_be_decided_is_undecided() {
         vertex_face(&no_number, &paddle(PI), &p),
         vertex_face(&far, &paddle(PI), &p),
         vertex_face(&point, &turns, &p),
+        vertex_face(&point, &paddle(2.1 * PI), &p),
         vertex_face(&point, &paddle(PI), &Params { max_iterations: 0, ..p }),
     ] {
         assert!(none(verdict) && verdict.exhausted(), "{verdict:?}");
@@ -202,8 +203,8 @@ fn scale_does_not_matter() {
     }
 }
 
-/// A hull that a certificate holds contains the origin for all vectors within its radius that are in one plane. Of
-/// vectors that count as exact it does not.
+/// A hull that a certificate holds contains the origin for all vectors within its radius that are in one plane.
+/// If vectors count as exact, it does not.
 #[test]
 fn a_certificate_holds_within_its_radius() {
     let mut r = SmallRng::seed_from_u64(3);

@@ -6,10 +6,11 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 
 /// Commands that are tried here.
-const COMMANDS: [&str; 8] = ["detect", "plan", "picture", "explain", "scene", "bench", "tables", "trade"];
+const COMMANDS: [&str; 9] =
+    ["detect", "plan", "picture", "explain", "scene", "bench", "tables", "trade", "turns"];
 
 /// Options of commands that take long: the test that sees what each changes.
-const ELSEWHERE: [(&str, &[&str], &str); 4] = [
+const ELSEWHERE: [(&str, &[&str], &str); 5] = [
     ("bench", &["question", "repeat", "against", "limit", "out", "json", "list"], "tests/cli/bench.rs"),
     (
         "tables",
@@ -17,6 +18,7 @@ const ELSEWHERE: [(&str, &[&str], &str); 4] = [
         "tests/cli/tables.rs",
     ),
     ("trade", &["queries", "mesh", "truth", "out", "json"], "tests/cli/trade.rs"),
+    ("turns", &["family", "pairs", "times", "seed", "out", "json"], "tests/cli/turns.rs"),
     // How much is measured, and how often: no test has the minutes to hours that these take.
     ("trade", &["full", "repeat"], "src/lab/trade.rs"),
 ];

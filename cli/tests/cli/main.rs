@@ -28,6 +28,7 @@ mod selftest;
 mod sequence;
 mod tables;
 mod trade;
+mod turns;
 mod with;
 mod words;
 
@@ -50,7 +51,7 @@ fn err(output: &Output) -> String {
 
 /// A command, with the name before it if it is one of the laboratory.
 fn path(command: &str) -> Vec<&str> {
-    let is_of_lab = ["trade", "tables", "bench", "plan", "scene"].contains(&command);
+    let is_of_lab = ["trade", "tables", "bench", "plan", "scene", "turns"].contains(&command);
     if is_of_lab { vec!["lab", command] } else { vec![command] }
 }
 
@@ -371,9 +372,9 @@ fn the_program_says_what_it_is() {
     };
     let product = ["detect", "explain", "picture", "selftest", "completions", "man", "lab", "help"];
     assert_eq!(commands(&help), product);
-    assert_eq!(commands(&ok(&["lab", "--help"])), ["trade", "tables", "bench", "plan", "scene", "help"]);
+    assert_eq!(commands(&ok(&["lab", "--help"])), ["trade", "tables", "bench", "plan", "scene", "turns", "help"]);
     // The laboratory has one door.
-    for command in ["trade", "tables", "bench", "plan", "scene"] {
+    for command in ["trade", "tables", "bench", "plan", "scene", "turns"] {
         assert!(refused(2, &[command, "--help"]).contains("unrecognized subcommand"), "{command}");
         assert!(ok(&["lab", command, "-h"]).contains(&format!("nearmiss lab {command}")), "{command}");
     }

@@ -99,7 +99,7 @@ pub struct Body {
 }
 
 impl Body {
-    /// Where the pivot is.
+    /// The place of the pivot.
     pub fn pivot_at(&self, t: f64) -> Point {
         [0, 1, 2].map(|k| self.pivot[0][k] * (1.0 - t) + self.pivot[1][k] * t)
     }
@@ -131,7 +131,7 @@ impl Body {
     }
 }
 
-/// Where features meet.
+/// The time and place of a meeting.
 pub struct Meeting {
     /// The time.
     pub t: f64,

@@ -49,14 +49,14 @@ pub struct Case {
     pub is_inside: bool,
 }
 
-/// What is built: two bodies, and where they meet.
+/// The plan of a pair: two bodies, and the place where they meet.
 struct Plan {
     bodies: [Body; 2],
     m: Meeting,
     separation: f64,
 }
 
-/// The body that deforms beside another.
+/// A body that deforms, with the pivot of another.
 fn deformable(r: &mut Choice, beside: &Body, differ: f64) -> Body {
     let speed = times(r.between(0.0, 1.0), r.direction());
     Body { phi: [0.0; 3], pivot: beside.pivot, speed: Some((speed, differ)) }

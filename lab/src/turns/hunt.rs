@@ -108,9 +108,9 @@ pub struct Judged {
     pub case: Case,
     /// The verdict.
     pub verdict: Verdict,
-    /// What the judge knows.
+    /// The judge's bounds.
     pub known: Known,
-    /// What is wrong.
+    /// The fault, if there is one.
     pub fault: Option<Fault>,
     /// The time of the test, in microseconds.
     pub microseconds: f64,

@@ -70,7 +70,7 @@ fn bounds_of_a_fiftieth_are_noticed() {
     assert!(row.missed > 5, "{row:?}");
 }
 
-/// Places count as exact. Of the family whose features are nearest, the judge finds a fault.
+/// Places that count as exact: the judge finds a fault among features that are very near.
 #[test]
 fn places_without_an_error_are_noticed() {
     fn exact<const N: usize>(motion: &mut Motion<N>) {

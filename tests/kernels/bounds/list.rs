@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// Constants on which no proof of an answer rests, or which are no allowance.
-const OTHERS: [(&str, &str); 37] = [
+const OTHERS: [(&str, &str); 38] = [
     ("U32", "the unit"),
     ("U64", "the unit"),
     ("CUBIC_VALUE", "a guess: the cubic's roots guarantee nothing"),
@@ -38,6 +38,7 @@ const OTHERS: [(&str, &str); 37] = [
     ("RELATIVE_LIMIT", "a range"),
     ("PLANE_LIMIT", "a range"),
     ("TURN_FAINT", "a range"),
+    ("TURN_MOST", "a range"),
     ("TURNING_FAINT", "a range"),
     ("TURNING_FINEST", "a limit of what may be asked"),
     ("TURNING_SHORTEST", "a cost"),

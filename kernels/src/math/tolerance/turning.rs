@@ -21,6 +21,9 @@ pub const TURN: f64 = 64.0 * U64;
 /// `5.2u` and its scalar part by `4u`, times at most pi; the factor of it errs by `4u`, times pi.
 /// Absolute, in radians.
 pub const TURN_BETWEEN: f64 = 32.0 * U64;
+/// The largest turn: a full one and a little. An angle that is rounded up to it is one still.
+/// Radians.
+pub const TURN_MOST: f64 = 6.2832;
 /// Factor of a sum of positive products that makes it at least the true one: `1 + 16u`. Ratio.
 pub const TURN_UP: f64 = 1.0 + 16.0 * U64;
 /// Underflow of the square of an angle, an eighth of it: below `2^-1021`. Radians squared.
@@ -30,8 +33,8 @@ pub const TURN_FAINT: f64 = f64::from_bits(2 << 52);
 ///
 /// - Computed, of the point of the first side: [`TURN`] twice, `3u` for the mixture of its ends,
 ///   `3u` for sums: `134u`.
-/// - Computed, of its pivot: [`TURN`] once, `5u` for a difference and a mixture. Of the point of
-///   the second side: `4u`.
+/// - Computed, of its pivot: [`TURN`] once, `5u` for a difference and a mixture. The point of the
+///   second side: `4u`.
 /// - Of what is given: `16u` for a placed point, [`TURN_BETWEEN`] for each rotation vector: `80u`
 ///   at most.
 ///
@@ -39,8 +42,8 @@ pub const TURN_FAINT: f64 = f64::from_bits(2 << 52);
 pub const TURNING_PLACE: f64 = 256.0 * U64;
 /// How far a control vector may be from a curve through its computed places, but for the curve's
 /// own deviation: [`TURNING_PLACE`] times this. A parabola through three places has 1.25 of their
-/// errors, of which `134u` are those of computing, and `15u` of the middle's time. What is given
-/// adds `80u`, and products with a direction `48u`. In all `315u`. Ratio.
+/// errors, of which `134u` are those of computing, and `15u` of the middle's time. The given
+/// numbers add `80u`, and products with a direction `48u`. In all `315u`. Ratio.
 pub const TURNING_CURVE: f64 = 2.0;
 /// Factor of a bound of a derivative: at most twenty roundings of positive terms, `1 + 64u`.
 /// Ratio.

@@ -1,9 +1,10 @@
 //! A look ahead of features that are near and undecided: is there a certain contact soon?
 //!
-//! What is found bounds the first contact from above. It proves nothing about other times.
+//! Such a contact bounds the first one from above. It proves nothing about other times.
 
 use super::certificate::Contact;
-use super::motion::{Motion, Place};
+use super::motion::Motion;
+use super::place::Place;
 
 /// How far it looks: the first step times `2^15`.
 const PROBES: u32 = 16;

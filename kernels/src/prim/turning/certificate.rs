@@ -6,7 +6,8 @@
 //! (`prim::isolate::suspect`). The values are those of the true motion: no curve enters.
 
 use super::length;
-use super::motion::{Motion, Place, ring};
+use super::motion::Motion;
+use super::place::{Place, ring};
 use crate::math::Vec3;
 use crate::math::tolerance::U64;
 use crate::math::tolerance::turning::{TURN_UP, TURNING_CURVE, TURNING_VOLUME};

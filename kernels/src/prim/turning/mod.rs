@@ -9,6 +9,7 @@
 //! | file | step |
 //! | --- | --- |
 //! | [`motion`] | control vectors in the frame that turns with the second side |
+//! | [`place`] | the pair at a time; directions in which it is apart |
 //! | [`rates`] | bounds of their derivatives |
 //! | [`slice`](mod@slice) | planes that prove that a slice of time is clear |
 //! | [`window`] | the part of a slice in which boxes meet |
@@ -48,13 +49,15 @@
 pub mod ahead;
 pub mod certificate;
 pub mod motion;
+pub mod place;
 pub mod rates;
 pub mod slice;
 pub mod solve;
 pub mod window;
 
 pub use certificate::Contact;
-pub use motion::{Motion, Place};
+pub use motion::Motion;
+pub use place::Place;
 use solve::length;
 
 use super::inclusion::{Params, Verdict};

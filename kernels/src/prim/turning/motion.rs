@@ -1,17 +1,19 @@
 //! The motion of a pair, in the frame that turns with the second side.
 
+use super::place::{Place, edges, of_length};
 use super::rates::Rates;
 use super::{Side, length};
-use crate::math::tolerance::turning::{TURN_UP, TURNING_ACROSS, TURNING_NEAR, TURNING_PLACE, TURNING_VOLUME};
+use crate::math::tolerance::turning::{
+    TURN_MOST, TURN_UP, TURNING_ACROSS, TURNING_NEAR, TURNING_PLACE, TURNING_VOLUME,
+};
 use crate::math::turn::Turn;
 use crate::math::{Real, Vec3};
 use crate::prim::isolate::nearest::nearest;
 
 /// A pair in motion, in the frame of its second side: that turns, and has its origin in the side's
 /// pivot. There the points of the second side move linearly, or not at all. All lengths are
-/// multiplied by the power of two that brings the largest
-/// component to [1, 2). `N` is 3 for a vertex and a face,
-/// 4 for two edges.
+/// multiplied by the power of two that brings the largest component to [1, 2). `N` is 3 for a vertex
+/// and a face, 4 for two edges.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion<const N: usize> {
     turns: [Turn; 2],
@@ -30,98 +32,13 @@ pub struct Motion<const N: usize> {
     pub error: f64,
     /// One unit of the input in these units.
     pub scale: f64,
-    /// Whether all numbers are finite.
+    /// Whether all numbers are finite, and no turn is more than a full one.
     pub finite: bool,
-}
-
-/// The pair at a time.
-#[derive(Clone, Copy, Debug)]
-pub struct Place<const N: usize> {
-    /// The time.
-    pub t: f64,
-    /// The control vectors: vertex less corner, or at `2j + k` end j of the first edge less end k
-    /// of the second. The features meet if their hull holds the origin.
-    pub w: [Vec3<f64>; N],
-    /// The largest distance of a point of the first side from the second side's pivot.
-    pub reach: f64,
-    /// The triple product of both edges and a control vector: zero if the features are in one plane.
-    pub volume: f64,
-    /// How far `volume` may be from the true one.
-    pub error: f64,
-    /// The distance of a point of the hull, next to the origin.
-    pub distance: f64,
-    /// A direction in which the hull is far from the origin: that point; if it is very near, across
-    /// a border of the hull or its plane.
-    pub direction: Vec3<f64>,
 }
 
 #[inline(always)]
 fn mix(x: &[Vec3<f64>; 2], t: f64) -> Vec3<f64> {
     x[0] * (1.0 - t) + x[1] * t
-}
-
-/// The two edges of a pair by its control vectors: of the face, or of either side.
-#[inline(always)]
-pub fn edges<const N: usize>(w: &[Vec3<f64>; N]) -> [Vec3<f64>; 2] {
-    if N == 3 { [w[0] - w[1], w[0] - w[2]] } else { [w[2] - w[0], w[0] - w[1]] }
-}
-
-/// The corners in the order of the hull's border.
-#[inline(always)]
-pub fn ring<const N: usize>(k: usize) -> usize {
-    if N == 3 { [0, 1, 2, 0][k] } else { [0, 1, 3, 2, 0][k] }
-}
-
-#[inline(always)]
-fn of_length(x: Vec3<f64>) -> (Vec3<f64>, f64) {
-    (x, length(x))
-}
-
-/// How far the hull is from the origin along a direction; NaN of none.
-#[inline(always)]
-fn far_along<const N: usize>(w: &[Vec3<f64>; N], d: Vec3<f64>) -> f64 {
-    let mut least = d.dot(w[0]);
-    for k in 1..N {
-        least = Real::min(least, d.dot(w[k]));
-    }
-    least / length(d)
-}
-
-/// A point of the parallelogram of two edges, near the one next to the origin. By vector products:
-/// of edges almost parallel, sums of squares would lose twice as many digits.
-#[inline(always)]
-fn of_edges<const N: usize>(w: &[Vec3<f64>; N]) -> Vec3<f64> {
-    let clamped = |x: f64| if x > 0.0 { Real::min(x, 1.0) } else { 0.0 };
-    let (o, p, q) = (w[0], w[2] - w[0], w[1] - w[0]);
-    let n = p.cross(q);
-    let u = clamped(q.cross(o).dot(n) / n.dot(n));
-    let v = clamped(-(o + p * u).dot(q) / q.dot(q));
-    let u = clamped(-(o + q * v).dot(p) / p.dot(p));
-    (w[0] * (1.0 - v) + w[1] * v) * (1.0 - u) + (w[2] * (1.0 - v) + w[N - 1] * v) * u
-}
-
-/// The direction across the border of the hull that has the corner nearest along `d` and is across
-/// `d` but for the rounding of that; of several the one along which `d` differs most. Else `d`.
-///
-/// The point next to the origin errs by roundings of the hull's size. If it is very near, its
-/// direction is too far from across its border: one end of that seems to be behind the origin.
-#[inline(always)]
-fn across_border<const N: usize>(w: &[Vec3<f64>; N], d: Vec3<f64>, rounding: f64) -> Vec3<f64> {
-    let mut least = d.dot(w[0]);
-    for k in 1..N {
-        least = Real::min(least, d.dot(w[k]));
-    }
-    let (mut most, mut square, mut border) = (0.0, 1.0, Vec3([0.0; 3]));
-    for k in 0..N {
-        let (x, y) = (w[ring::<N>(k)], w[ring::<N>(k + 1)]);
-        let e = y - x;
-        let (along, long) = (d.dot(e), e.dot(e));
-        let has_least = Real::min(d.dot(x), d.dot(y)) <= least;
-        if has_least && along * along < rounding * rounding * long && along.abs() > most.abs() {
-            (most, square, border) = (along, long, e);
-        }
-    }
-    d - border * (most / square)
 }
 
 impl<const N: usize> Motion<N> {
@@ -148,7 +65,9 @@ impl<const N: usize> Motion<N> {
                 consider(y[k][i]);
             }
         }
-        let finite = sum < f64::INFINITY;
+        let turns = [Turn::new(a.phi), Turn::new(b.phi)];
+        let known = turns[0].angle() <= TURN_MOST && turns[1].angle() <= TURN_MOST;
+        let finite = known && sum < f64::INFINITY;
         let parts = most.parts();
         let mut scale = 1.0;
         if finite && parts.mantissa != 0 {
@@ -169,7 +88,6 @@ impl<const N: usize> Motion<N> {
         }
         let reach = (far + far_a + far_b) * TURN_UP;
         let error = TURNING_PLACE * reach;
-        let turns = [Turn::new(a.phi), Turn::new(b.phi)];
         let rates = Rates::of(a.phi, b.phi, &pivot, &x, &y);
         Motion { turns, pivot, a: x, b: y, rates, reach, error, scale, finite }
     }
@@ -181,7 +99,7 @@ impl<const N: usize> Motion<N> {
         let pivot = mix(&self.pivot, t);
         let mut w = [Vec3([0.0; 3]); N];
         let mut reach = 0.0;
-        for j in 0..N / 3 + N / 4 {
+        for j in 0..if N == 3 { 1 } else { 2 } {
             let y = frame.back(pivot + turn.on(mix(&self.a[j], t)));
             reach = Real::max(reach, y.dot(y));
             for k in 0..if N == 3 { 3 } else { 2 } {
@@ -210,35 +128,5 @@ impl<const N: usize> Motion<N> {
         let ep = if N == 3 { e } else { 2.0 * e };
         let given = ((p + ep) * (q + e)) * e + (ep * (q + e) + e * p) * w;
         (given + TURNING_VOLUME * (p * q * w)) * TURN_UP
-    }
-}
-
-impl<const N: usize> Place<N> {
-    /// Betters the direction, and the distance of edges, of features that are very near.
-    #[inline(never)]
-    fn refine(&mut self, normal: Vec3<f64>, rounding: f64) {
-        if N == 4 {
-            let (point, distance) = of_length(of_edges(&self.w));
-            if distance < self.distance {
-                (self.direction, self.distance) = (point, distance);
-            }
-        }
-        self.direction = across_border(&self.w, self.direction, rounding);
-        let normal = if self.volume > 0.0 { normal } else { -normal };
-        if far_along(&self.w, normal) > far_along(&self.w, self.direction) {
-            self.direction = normal;
-        }
-    }
-
-    /// The certain sign of the volume; zero if none is.
-    #[inline(always)]
-    pub fn side(&self) -> f64 {
-        if self.volume > self.error {
-            1.0
-        } else if self.volume < -self.error {
-            -1.0
-        } else {
-            0.0
-        }
     }
 }

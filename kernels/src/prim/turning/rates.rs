@@ -35,7 +35,7 @@ pub struct Rate {
     pub by_difference: f64,
     /// The bound by the distance, of a point in the second side's pivot.
     pub own: f64,
-    /// What a unit of distance adds to that.
+    /// The increase of that per unit of distance.
     pub by_distance: f64,
 }
 
@@ -50,11 +50,11 @@ impl Rate {
 /// Bounds of the derivatives of all control vectors of a pair.
 #[derive(Clone, Copy, Debug)]
 pub struct Rates {
-    /// Of the first derivative of a point of the first side.
+    /// The first derivative of a point of the first side.
     pub first: Rate,
-    /// Of the second.
+    /// The second derivative.
     pub second: Rate,
-    /// Of the third.
+    /// The third derivative.
     pub third: Rate,
     /// The speed of the second side's points.
     pub other: f64,

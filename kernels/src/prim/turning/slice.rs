@@ -9,7 +9,8 @@
 //! computed direction will do: it is exact by definition.
 
 use super::length;
-use super::motion::{Motion, Place, edges};
+use super::motion::Motion;
+use super::place::{Place, edges};
 use crate::math::tolerance::turning::{TURN_UP, TURNING_AXIS, TURNING_CURVE, TURNING_FAINT, TURNING_VOLUME};
 use crate::math::{Real, Vec3};
 
@@ -58,7 +59,7 @@ impl<const N: usize> Motion<N> {
         Bounds { time: h, chord: second * h * h * 0.125 * TURN_UP, parabola, speed }
     }
 
-    /// What products with a direction must exceed: the deviation, across the axis if there is one,
+    /// The number that products with a direction must exceed: the deviation, across the axis if there is one,
     /// the error and the separation. Infinite if the direction is none.
     #[inline(always)]
     fn needs(&self, d: Vec3<f64>, deviation: f64, separation: f64) -> f64 {

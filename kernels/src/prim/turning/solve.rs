@@ -5,7 +5,8 @@
 //! There is no stack.
 
 use super::certificate::Contact;
-use super::motion::{Motion, Place};
+use super::motion::Motion;
+use super::place::Place;
 use super::slice::Bounds;
 use crate::math::tolerance::turning::{TURN_UP, TURNING_CURVE, TURNING_FINEST, TURNING_SHORTEST};
 use crate::math::{Real, Vec3};
@@ -30,7 +31,7 @@ enum Look<const N: usize> {
     Open(Option<Place<N>>),
 }
 
-/// What follows a slice that is not clear.
+/// The successor of a slice that is not clear.
 enum Next<const N: usize> {
     /// Its part between two times.
     Part(f64, f64),
@@ -124,7 +125,7 @@ impl<const N: usize> Motion<N> {
                     let mut step = if clear { 2.0 * h } else { h };
                     from = to;
                     if from.t >= part && beyond > from.t {
-                        // What was cut off was about as long as the slice then.
+                        // The part that was cut off was about as long as the slice then.
                         step = step.max(beyond - from.t);
                         from = self.at(beyond);
                     }

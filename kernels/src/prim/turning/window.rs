@@ -1,6 +1,7 @@
 //! The part of a slice in which the boxes of the features meet.
 
-use super::motion::{Motion, Place};
+use super::motion::Motion;
+use super::place::Place;
 use super::slice::Bounds;
 use crate::math::Real;
 use crate::math::tolerance::U64;
@@ -39,7 +40,9 @@ impl Window {
 
 impl<const N: usize> Motion<N> {
     /// The part of a slice in which the box of the control vectors' chords, grown by how far they
-    /// are left, holds the origin. At other times there is no contact.
+    /// are left, holds the origin. At other times there is no contact. Its ends are rounded to
+    /// times: in `u` of the step a control vector moves by `15u` of the reach at most, which the
+    /// growth has room for.
     #[inline]
     pub fn window(&self, from: &Place<N>, to: &Place<N>, b: &Bounds, separation: f64) -> Window {
         let more = (b.chord + TURNING_CURVE * self.error + separation) * TURN_UP;

@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 const ROUNDED: f64 = 1.0 / (1u128 << 102) as f64;
 /// Factor of a radius for its own roundings.
 const UP: f64 = 1.0 + 1.0 / (1u64 << 48) as f64;
-/// What underflow may lose.
+/// The most that underflow may lose.
 const FAINT: f64 = 1e-290;
 
 /// All numbers within `radius` of `high + low`.

@@ -47,7 +47,7 @@ impl Pair {
     }
 }
 
-/// What is known of a first contact.
+/// Bounds of a first contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Known {
     /// There is none before; 2 if there is none at all.

@@ -53,7 +53,7 @@ impl Mul for Dual {
 pub struct Vector<T>(pub [T; 3]);
 
 impl Vector<Ball> {
-    /// Of doubles.
+    /// A vector of doubles.
     pub fn of(x: [f64; 3]) -> Self {
         Vector(x.map(Ball::of))
     }
