@@ -148,7 +148,7 @@ pub fn after([x, y, z, w]: [f64; 4], [x0, y0, z0, w0]: [f64; 4]) -> [f64; 4] {
 #[inline]
 pub fn bulge(angle: f64) -> f64 {
     let most = angle * angle * 0.125 * TURN_UP + TURN_FAINT;
-    if !(angle > 0.0) {
+    if angle == 0.0 {
         0.0
     } else if most < 2.0 {
         most

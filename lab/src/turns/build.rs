@@ -186,8 +186,8 @@ pub fn pair(r: &mut Choice, is_face: bool, bodies: &[Body; 2], t: f64, points: &
     let count = if is_face { [1, 3] } else { [2, 2] };
     for i in 0..2 {
         let mut side = Side { phi: bodies[i].phi, pivot: bodies[i].pivot, ..Side::default() };
-        for k in 0..count[i] {
-            side.points[k] = bodies[i].vertex(r, t, points[i][k]);
+        for (vertex, at) in side.points.iter_mut().zip(points[i]).take(count[i]) {
+            *vertex = bodies[i].vertex(r, t, at);
         }
         pair.sides[i] = side;
     }

@@ -158,13 +158,9 @@ fn far(r: &mut SmallRng, n: usize) -> Vec<f64> {
         let phi = three(&x[at..]);
         let k = r.random_range(0.7..1.0) / length(phi);
         x[at..at + 3].copy_from_slice(&(phi * k).0);
-        for k in at + 3..at + 9 {
-            x[k] *= 1e-3;
-        }
+        x[at + 3..at + 9].iter_mut().for_each(|x| *x *= 1e-3);
     }
-    for k in 27..36 {
-        x[k] *= 1e-3;
-    }
+    x[27..36].iter_mut().for_each(|x| *x *= 1e-3);
     x[36] = r.random_range(0.7..1.0);
     x
 }

@@ -21,9 +21,8 @@ pub const TURN: f64 = 64.0 * U64;
 /// `5.2u` and its scalar part by `4u`, times at most pi; the factor of it errs by `4u`, times pi.
 /// Absolute, in radians.
 pub const TURN_BETWEEN: f64 = 32.0 * U64;
-/// The largest turn: a full one and a little. An angle that is rounded up to it is one still.
-/// Radians.
-pub const TURN_MOST: f64 = 6.2832;
+/// The largest turn: a full one and a millionth of it, for one that was rounded up. Radians.
+pub const TURN_MOST: f64 = core::f64::consts::TAU * (1.0 + 1.0 / 1048576.0);
 /// Factor of a sum of positive products that makes it at least the true one: `1 + 16u`. Ratio.
 pub const TURN_UP: f64 = 1.0 + 16.0 * U64;
 /// Underflow of the square of an angle, an eighth of it: below `2^-1021`. Radians squared.

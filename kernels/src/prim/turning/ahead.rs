@@ -90,7 +90,7 @@ impl<const N: usize> Motion<N> {
             if k > RISING && c > b && b > a {
                 return None;
             }
-            step = 2.0 * step;
+            step *= 2.0;
         }
         for _ in 0..STEPS {
             let [a, b, c] = last;

@@ -110,7 +110,7 @@ impl<const N: usize> Motion<N> {
                 if k > 4 {
                     break;
                 }
-                least = 4.0 * least;
+                least *= 4.0;
             }
             half = least.max(half * (1.0 / 64.0));
         }

@@ -54,7 +54,7 @@ impl<const N: usize> Motion<N> {
         let mut consider = |x: Vec3<f64>| {
             let x = x.map(Real::abs);
             most = Real::max(most, x[0].max(x[1]).max(x[2]));
-            sum = sum + (x[0] + x[1] + x[2]);
+            sum += x[0] + x[1] + x[2];
         };
         for i in 0..2 {
             consider(pivot[i]);

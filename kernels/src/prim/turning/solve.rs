@@ -176,7 +176,8 @@ impl<const N: usize> Motion<N> {
             let way = h * b.speed;
             let is_near = way <= SHORT * tolerance && from.distance <= separation + 0.5 * tolerance;
             if is_shortest || is_near {
-                if certain.is_some() && (is_shortest || way <= SHORTEST * tolerance) {
+                // With a separation the slice ends in the contact.
+                if certain.is_some() && (is_shortest || separation > 0.0 || way <= SHORTEST * tolerance) {
                     return verdict(certain, from.t);
                 }
                 if certain.is_none() {
