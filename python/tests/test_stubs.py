@@ -125,6 +125,9 @@ class Body:
     def __new__(cls, vertices, *, kind="rigid"): ...
     def weigh(self, by: float = 1.0) -> float:
         """Return the weight."""
+    @staticmethod
+    def of(text: str) -> Body:
+        """Return the body of a text."""
 '''
 
 
@@ -132,7 +135,8 @@ def planted():
     """A module that is a little other than its stub."""
     module = types.ModuleType("planted")
     exec('class Body:\n    """A body."""\n    def __new__(cls, vertices, *, kind="rigid"): ...\n'
-         '    def weigh(self, by=1.0):\n        """Return the weight."""', vars(module))
+         '    def weigh(self, by=1.0):\n        """Return the weight."""\n'
+         '    @staticmethod\n    def of(text):\n        """Return the body of a text."""', vars(module))
     vars(module).pop("__builtins__", None)
     return module
 
@@ -144,6 +148,7 @@ def planted():
     (("*, kind", "kind"), "Body.__new__ takes (vertices, *, kind='rigid')"),
     (("the weight", "a weight"), "Body.weigh has another docstring"),
     (("A body.", "Body."), "Body has another docstring"),
+    (("of a text", "of text"), "Body.of has another docstring"),
     (("weigh", "weight_of"), "Body.weigh is missing"),
     (("class Body", "class Cloth"), "Body is missing"),
 ])
@@ -153,7 +158,8 @@ def test_a_stub_that_says_something_else_is_noticed(change, fault):
 
 
 def test_docstrings_are_written_into_stubs():
-    bare = re.sub(r'\n *"""(A body\.|Return the weight\.)"""', "", PLANTED).replace("-> float:", "-> float: ...")
+    bare = re.sub(r'\n *"""(A body|Return the weight|Return the body of a text)\."""', "", PLANTED)
+    bare = bare.replace("-> float:", "-> float: ...").replace("-> Body:", "-> Body: ...")
     assert bare.count('"""') == 0 and differences(bare, planted()) != []
     for text in (bare, PLANTED.replace("the weight", "nothing"), PLANTED):
         blessed = with_docstrings(text, planted())
