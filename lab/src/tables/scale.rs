@@ -9,6 +9,7 @@ use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::query::{Query, QueryKind};
 use serde::Serialize;
+use std::time::Instant;
 
 /// A size, with one query.
 #[derive(Clone, Debug, Serialize)]
@@ -31,6 +32,9 @@ pub struct ScaleRow {
     pub narrow_ms: f64,
     /// Milliseconds of the frame.
     pub frame_ms: f64,
+    /// Median milliseconds that a caller waits for the answer of all devices; `None` if they are one
+    /// machine in turn.
+    pub wait_ms: Option<f64>,
     /// Speed relative to one device: at most the number of devices. `None` for one device.
     pub speedup: Option<f64>,
     /// Growth of the frame's time with triangles, as an exponent relative to the size before.
@@ -83,8 +87,16 @@ pub fn scale(
                 for _ in 0..WARM_UP {
                     detector.detect()?;
                 }
-                let found: Vec<Contacts> =
-                    (0..frames).map(|_| detector.detect()).collect::<Result<_, _>>()?;
+                let mut waits = Vec::new();
+                let found: Vec<Contacts> = (0..frames)
+                    .map(|_| {
+                        let start = Instant::now();
+                        let found = detector.detect();
+                        waits.push(start.elapsed().as_secs_f64() * 1e3);
+                        found
+                    })
+                    .collect::<Result<_, _>>()?;
+                waits.sort_by(f64::total_cmp);
                 let Some(last) = found.last() else { return Ok(()) };
                 let of = |stage: fn(&Stages) -> f64| {
                     let mut ms: Vec<f64> = found.iter().map(|found| stage(&found.stats.stages)).collect();
@@ -118,6 +130,7 @@ pub fn scale(
                     traverse_ms: of(|s| s.traverse),
                     narrow_ms: of(|s| s.narrow),
                     frame_ms,
+                    wait_ms: (!in_turn || count == 1).then(|| waits[waits.len() / 2]),
                     speedup: of_one.as_ref().map(|one| one.frame_ms / frame_ms),
                     exponent,
                     bytes: held().sum::<u64>() - others,
@@ -148,6 +161,7 @@ impl Printed for ScaleRow {
         "traverse ms",
         "narrow ms",
         "frame ms",
+        "wait ms",
         "times",
         "exponent",
         "MB",
@@ -169,6 +183,7 @@ impl Printed for ScaleRow {
             digits(self.traverse_ms),
             digits(self.narrow_ms),
             digits(self.frame_ms),
+            maybe(self.wait_ms),
             maybe(self.speedup),
             maybe(self.exponent),
             digits(self.bytes as f64 / 1e6),
