@@ -1,7 +1,7 @@
 //! A body: one mesh at one frame or at both ends of a step, with its kind and filter.
 
 use super::place::radius;
-use super::{BodyKind, CollisionFilter, DeviceMotion, Path, Pose, PoseStep};
+use super::{BodyKind, CollisionFilter, DeviceMotion, Pose, PosePath, PoseStep};
 use crate::Error;
 #[cfg(doc)]
 use crate::mesh::Problem;
@@ -21,7 +21,7 @@ pub struct Body {
     /// Poses of a rigid body at both ends of the step.
     pub(super) poses: [Pose; 2],
     /// Its path between them.
-    pub(super) path: Path,
+    pub(super) path: PosePath,
     /// Radius of a rigid body: no vertex of a face is farther from the centre of rotation.
     pub(super) radius: f64,
     /// Default tolerance of the original mesh, once it was computed.
@@ -65,7 +65,7 @@ impl Body {
             kind: BodyKind::Deformable,
             filter: CollisionFilter::default(),
             poses: [Pose::default(); 2],
-            path: Path::default(),
+            path: PosePath::default(),
             radius: 0.0,
             tolerance: Kept::default(),
             resident: None,
@@ -140,7 +140,7 @@ impl Body {
     /// Whether its vertices go straight between its poses, by choice. A body whose poses only the
     /// device has turns.
     pub(crate) fn is_straight(&self) -> bool {
-        self.path == Path::Straight && !self.is_device_resident()
+        self.path == PosePath::Straight && !self.is_device_resident()
     }
 
     /// Returns the pivot and the rotation vector of a rigid body with these poses. `None` if it does

@@ -19,7 +19,7 @@ pub use device_motion::{DeviceMotion, DevicePose, DeviceRows, Number};
 pub use motion::Motion;
 pub(crate) use place::{Bounds, NOTHING, union};
 pub use pose::Pose;
-pub use pose_step::{Path, PoseStep};
+pub use pose_step::{PosePath, PoseStep};
 pub use poses::Poses;
 #[doc(hidden)]
 pub use sides::{mean_side, of_edges};

@@ -1,7 +1,7 @@
 //! Placing of a body from frame to frame.
 
 use super::body::{Kept, Resident};
-use super::{Body, BodyKind, DeviceMotion, Motion, Path, Pose, PoseStep, of_edges};
+use super::{Body, BodyKind, DeviceMotion, Motion, Pose, PosePath, PoseStep, of_edges};
 use crate::Error;
 use crate::mesh::{self, MAX_ABS_F64, Points, Positions, Problem};
 use nearmiss_kernels::math::Vec3;
@@ -146,7 +146,7 @@ impl Body {
 
     /// Stands in a pose.
     fn stand(&mut self, pose: Pose) {
-        (self.poses, self.path) = ([pose; 2], Path::default());
+        (self.poses, self.path) = ([pose; 2], PosePath::default());
     }
 
     fn put_vertices(&mut self, t0: Points, t1: Option<Points>) {
@@ -204,7 +204,7 @@ impl Body {
         self.resident = None;
         match (self.kind, ends, poses) {
             (BodyKind::Rigid, _, [start, end]) if moving => {
-                (self.poses, self.path) = ([*start, *end], Path::default());
+                (self.poses, self.path) = ([*start, *end], PosePath::default());
             }
             (BodyKind::Rigid, _, [.., end]) => self.stand(*end),
             (_, [t0, t1], _) if moving => self.put_vertices(t0.into(), Some(t1.into())),

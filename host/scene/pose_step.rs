@@ -29,7 +29,7 @@ use nearmiss_kernels::stage::place::moved;
 pub struct PoseStep {
     start: Pose,
     end: End,
-    path: Path,
+    path: PosePath,
 }
 
 /// How the end of a step was given.
@@ -42,7 +42,7 @@ enum End {
 
 /// Path between two poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Path {
+pub enum PosePath {
     /// At a constant rate about a pivot.
     Turn {
         /// The pivot, in the frame of the mesh.
@@ -56,10 +56,10 @@ pub enum Path {
     Straight,
 }
 
-impl Default for Path {
+impl Default for PosePath {
     /// The shorter arc about the origin of the mesh.
-    fn default() -> Path {
-        Path::Turn { pivot: [0.0; 3], by: None }
+    fn default() -> PosePath {
+        PosePath::Turn { pivot: [0.0; 3], by: None }
     }
 }
 
@@ -69,14 +69,14 @@ impl PoseStep {
 
     /// Returns the step that turns by the shorter arc, about the origin of the mesh.
     pub fn new(start: impl Into<Pose>, end: impl Into<Pose>) -> PoseStep {
-        PoseStep { start: start.into(), end: End::Pose(end.into()), path: Path::default() }
+        PoseStep { start: start.into(), end: End::Pose(end.into()), path: PosePath::default() }
     }
 
     /// Returns the step that turns by a rotation vector while the pivot moves by `travel`. The
     /// vector is in the axes of the scene and in radians, as an integrator has it: angular velocity
     /// times the length of the step. Up to a whole turn ([`PoseStep::LONGEST_TURN`]).
     pub fn turning(start: impl Into<Pose>, turn: [f64; 3], travel: [f64; 3]) -> PoseStep {
-        let path = Path::Turn { pivot: [0.0; 3], by: Some(turn) };
+        let path = PosePath::Turn { pivot: [0.0; 3], by: Some(turn) };
         PoseStep { start: start.into(), end: End::Travel(travel), path }
     }
 
@@ -84,19 +84,19 @@ impl PoseStep {
     /// It has no effect on straight lines.
     pub fn about(self, pivot: [f64; 3]) -> PoseStep {
         match self.path {
-            Path::Turn { by, .. } => PoseStep { path: Path::Turn { pivot, by }, ..self },
-            Path::Straight => self,
+            PosePath::Turn { by, .. } => PoseStep { path: PosePath::Turn { pivot, by }, ..self },
+            PosePath::Straight => self,
         }
     }
 
     /// Returns the step along straight lines: every vertex moves from its place in the first pose to
     /// that in the second. Between them the body is not rigid.
     pub fn straight(self) -> PoseStep {
-        PoseStep { end: End::Pose(self.end()), path: Path::Straight, ..self }
+        PoseStep { end: End::Pose(self.end()), path: PosePath::Straight, ..self }
     }
 
     /// Returns the step of a body with these poses, on a path that leads from one to the other.
-    pub(crate) fn along([start, end]: [Pose; 2], path: Path) -> PoseStep {
+    pub(crate) fn along([start, end]: [Pose; 2], path: PosePath) -> PoseStep {
         PoseStep { start, end: End::Pose(end), path }
     }
 
@@ -109,7 +109,7 @@ impl PoseStep {
     pub fn end(&self) -> Pose {
         let (travel, pivot, turn) = match (self.end, self.path) {
             (End::Pose(end), _) => return end,
-            (End::Travel(travel), Path::Turn { pivot, by: Some(turn) }) => (travel, pivot, turn),
+            (End::Travel(travel), PosePath::Turn { pivot, by: Some(turn) }) => (travel, pivot, turn),
             (End::Travel(travel), _) => (travel, [0.0; 3], [0.0; 3]),
         };
         let rotation = after(exp(Vec3(turn)), self.start.record().rotation);
@@ -129,7 +129,7 @@ impl PoseStep {
     /// assert!(x.abs() < 1e-15 && (y - 1.0).abs() < 1e-15 && z == 0.0);
     /// ```
     pub fn at(&self, time: f64) -> Option<Pose> {
-        let Path::Turn { pivot, .. } = self.path else { return None };
+        let PosePath::Turn { pivot, .. } = self.path else { return None };
         let (start, end) = (self.start.record(), self.end().record());
         let turn = self.path.turn([self.start, self.end()]).map_or(Vec3([0.0; 3]), |(_, turn)| turn);
         let rotation = after(exp(turn * time), start.rotation);
@@ -150,7 +150,7 @@ impl PoseStep {
     /// [`Error::Input`], naming `body`, for a pivot or a rotation vector that is not finite, and for
     /// more than a whole turn.
     pub(crate) fn check(&self, body: &str) -> Result<(), Error> {
-        let Path::Turn { pivot, by } = self.path else { return Ok(()) };
+        let PosePath::Turn { pivot, by } = self.path else { return Ok(()) };
         let turn = by.unwrap_or_default();
         let length = Vec3(turn).dot(Vec3(turn)).sqrt();
         // False for NaN. The bound is above the rounding of a whole turn about any axis.
@@ -162,7 +162,7 @@ impl PoseStep {
     }
 
     /// The path.
-    pub fn path(&self) -> Path {
+    pub fn path(&self) -> PosePath {
         self.path
     }
 }
@@ -174,11 +174,11 @@ impl From<[Pose; 2]> for PoseStep {
     }
 }
 
-impl Path {
+impl PosePath {
     /// Returns the pivot and the rotation vector between two poses. `None` if nothing turns, or
     /// vertices go straight.
     pub(crate) fn turn(&self, [start, end]: [Pose; 2]) -> Option<([f64; 3], Vec3<f64>)> {
-        let Path::Turn { pivot, by } = *self else { return None };
+        let PosePath::Turn { pivot, by } = *self else { return None };
         let turn = by.map_or_else(|| between(start.record().rotation, end.record().rotation), Vec3);
         (turn.0 != [0.0; 3]).then_some((pivot, turn))
     }

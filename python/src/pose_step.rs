@@ -5,7 +5,7 @@ use crate::host::row;
 use crate::matrix::{is_matrix, pose_of};
 use crate::pose::{Pose, checked};
 use crate::query::{Remade, remade};
-use nearmiss::scene::{self, Motion, Path};
+use nearmiss::scene::{self, Motion, PosePath};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -127,7 +127,7 @@ impl PoseStep {
     /// Whether vertices go in straight lines.
     #[getter]
     fn straight(&self) -> bool {
-        self.known.is_some_and(|step| step.path() == Path::Straight)
+        self.known.is_some_and(|step| step.path() == PosePath::Straight)
     }
 
     /// On a GPU: whether they are the same arrays.
@@ -186,8 +186,8 @@ impl PoseStep {
     /// The pivot, and the rotation vector that was given.
     fn path(&self) -> ([f64; 3], Option<[f64; 3]>) {
         match self.known.map(|step| step.path()) {
-            Some(Path::Turn { pivot, by }) => (pivot, by),
-            Some(Path::Straight) | None => ([0.0; 3], None),
+            Some(PosePath::Turn { pivot, by }) => (pivot, by),
+            Some(PosePath::Straight) | None => ([0.0; 3], None),
         }
     }
 

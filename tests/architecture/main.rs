@@ -123,7 +123,19 @@ fn across_stages(sources: &[Source]) -> Vec<String> {
 fn stages_never_import_each_other() {
     assert_eq!(
         stages(),
-        ["balance", "construct", "fit", "narrow", "order", "place", "refit", "starts", "status", "traverse"]
+        [
+            "balance",
+            "construct",
+            "fit",
+            "narrow",
+            "order",
+            "place",
+            "refit",
+            "starts",
+            "status",
+            "traverse",
+            "turns"
+        ]
     );
     assert_eq!(across_stages(&rust(&["kernels/src/stage"])), NONE);
 }

@@ -11,5 +11,6 @@ mod pairs;
 mod prim;
 mod queries;
 mod sweep;
+mod swell;
 mod turning;
 mod volume;

@@ -372,7 +372,10 @@ fn the_program_says_what_it_is() {
     };
     let product = ["detect", "explain", "picture", "selftest", "completions", "man", "lab", "help"];
     assert_eq!(commands(&help), product);
-    assert_eq!(commands(&ok(&["lab", "--help"])), ["trade", "tables", "bench", "plan", "scene", "turns", "help"]);
+    assert_eq!(
+        commands(&ok(&["lab", "--help"])),
+        ["trade", "tables", "bench", "plan", "scene", "turns", "help"]
+    );
     // The laboratory has one door.
     for command in ["trade", "tables", "bench", "plan", "scene", "turns"] {
         assert!(refused(2, &[command, "--help"]).contains("unrecognized subcommand"), "{command}");

@@ -5,7 +5,7 @@ use super::features::Features;
 use super::rungs::Rungs;
 use super::start::StartCheck;
 use super::turning::Turning;
-use super::{AnswerLists, Narrow, NarrowContext, growable};
+use super::{AnswerLists, Capacities, Narrow, NarrowContext, growable};
 use crate::contacts::Entries;
 use crate::device::{Ahead, Buffer, Device};
 use crate::error::Error;
@@ -22,25 +22,6 @@ use nearmiss_kernels::abi::rows::code;
 use nearmiss_kernels::abi::{
     BodyTolerance, Counter, CullArgs, Hit, Pair, SolveArgs, Span, counter, earliest,
 };
-
-/// Initial capacities of the lists of a continuous query: vertex/face, edge/edge.
-pub struct Capacities {
-    /// Pairs that may meet.
-    pub survivors: [usize; 2],
-    /// Contacts.
-    pub hits: [usize; 2],
-    /// Pairs that a rung leaves to the next.
-    pub left: [usize; 2],
-    /// Pairs that a long list leaves to be settled.
-    pub asked: [usize; 2],
-}
-
-impl Capacities {
-    fn usual(few: usize) -> Capacities {
-        let left = [few / 4, few / 4];
-        Capacities { survivors: [few, 2 * few], hits: [few, few], left, asked: [0, 0] }
-    }
-}
 
 /// A step of the phase.
 #[derive(Clone, Copy)]
@@ -291,13 +272,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
                 let gap = self.solver.certified().filter(|certified| certified.is_apart());
                 let known = self.known(given.is_sample);
                 let numbers = (gap.map_or(0.0, Certified::listed_within), known);
-                if self.is_certified() {
-                    self.turning.reserve(given)?;
-                }
-                let pairs = match self.solver.certified() {
-                    Some(certified) => self.turning.divide(given, certified)?,
-                    None => given.pairs,
-                };
+                let pairs = self.turning.divide(given, self.solver.certified())?;
                 if known.is_empty() {
                     given.features.run::<R, R::Features>(given, pairs, numbers)
                 } else {

@@ -2,6 +2,7 @@
 //! none.
 
 mod answer;
+mod capacities;
 mod continuous;
 mod discrete;
 mod distance;
@@ -12,7 +13,8 @@ mod start;
 mod turning;
 
 pub use answer::AnswerLists;
-pub use continuous::{Capacities, ContinuousNarrow};
+pub use capacities::Capacities;
+pub use continuous::ContinuousNarrow;
 pub use discrete::DiscreteNarrow;
 pub use features::Features;
 

@@ -43,33 +43,29 @@ impl Turning {
         })
     }
 
-    /// Makes room for all candidates, if a body may turn: then a step in which others do has room too.
-    ///
-    /// # Errors
-    /// [`Error::OutOfMemory`].
-    pub fn reserve<R: Precision>(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
-        if given.frames.turns.is_empty() {
-            return Ok(());
-        }
+    /// Makes room for all candidates: then a step in which other bodies turn has room too.
+    fn reserve<R: Precision>(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
         let pairs = given.pairs.room() as usize;
         self.straight.reserve(given.device, pairs)?;
         self.turning.reserve(given.device, pairs)?;
         self.candidates.iter_mut().try_for_each(|list| list.reserve(given.device, FEW))
     }
 
-    /// Divides the candidates, and lists the features of those that turn. Returns the others. A
-    /// sample has none of those that turn: it only wants a bound.
+    /// Divides the candidates, and lists the features of those that turn. Returns the others: all for a
+    /// solver that is not certified, and goes straight. A sample has none of those that turn: it only
+    /// wants a bound.
     ///
     /// # Errors
-    /// Device errors.
+    /// [`Error::OutOfMemory`]; device errors.
     pub fn divide<R: Precision>(
-        &self,
+        &mut self,
         given: &NarrowContext<R>,
-        certified: &Certified,
+        certified: Option<&Certified>,
     ) -> Result<Output<Pair>, Error> {
-        if given.frames.turns.is_empty() {
+        let Some(certified) = certified.filter(|_| !given.frames.turns.is_empty()) else {
             return Ok(given.pairs);
-        }
+        };
+        self.reserve(given)?;
         let (straight, turning) = (self.straight.output(given.counters), self.turning.output(given.counters));
         let args = DivideArgs {
             turns: given.frames.turns,

@@ -80,8 +80,8 @@ pub fn stay_apart(a: &Side, b: &Side, gap: f64) -> bool {
     let mut t = 0.0;
     for _ in 0..STEPS {
         let gap = length(between(&apart, t) + a.at(t) - b.at(t)) - reach;
-        // False for NaN: then nothing is known.
-        if !(gap > 0.0) {
+        // Of NaN nothing is known.
+        if gap.is_nan() || gap <= 0.0 {
             return false;
         }
         let rest = (1.0 - t) * speed;
@@ -123,7 +123,7 @@ mod tests {
         let (mut met, mut parted, mut open) = (0, 0, 0);
         for k in 0..200 {
             let angle = 0.03 * k as f64;
-            let a = side([0.0, 0.0, angle.min(6.28)], [3.0, 0.0, 0.0], 0.1);
+            let a = side([0.0, 0.0, angle.min(6.25)], [3.0, 0.0, 0.0], 0.1);
             for way in 0..16 {
                 let turn = way as f64 * 0.39;
                 let at = [2.5 * turn.cos(), 2.5 * turn.sin(), 0.1 * (way % 5) as f64];

@@ -14,6 +14,7 @@
 //! | stage | reads | writes |
 //! | --- | --- | --- |
 //! | [`place`] | poses, uploaded positions, the caller's memory | positions of moved bodies |
+//! | [`turns`](mod@turns) | poses at both ends | bodies that turn in the step |
 //! | [`starts`] | positions at both ends | positions at t = 0, for queries at rest |
 //! | [`construct`] | positions at t = 0, faces | the order of tiles, or a tree without volumes |
 //! | [`fit`] | positions at t = 0 and t = 1, faces | volumes of triangles and tiles |

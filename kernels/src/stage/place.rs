@@ -62,13 +62,6 @@ fn row<L: Lane, const N: usize>(lane: &L, lent: &Lent, row: u32) -> [f64; N] {
     numbers
 }
 
-/// The root of the sum of a rotation's squares.
-#[inline(always)]
-pub(super) fn length(rotation: &[f64; 4]) -> f64 {
-    let [x, y, z, w] = *rotation;
-    Real::sqrt(x * x + y * y + z * z + w * w)
-}
-
 /// Checks that a lane made on the caller's numbers: see [`seen`].
 #[derive(Clone, Copy)]
 struct Seen {
@@ -127,7 +120,7 @@ pub fn place<R: Real, B: Block>(block: &mut B, args: &PlaceArgs<R>) {
                     let lent = placement.lent + 2 * end;
                     let translation = row::<_, 3>(lane, &lane.read(args.lent, lent), 0);
                     let rotation = row::<_, 4>(lane, &lane.read(args.lent, lent + 1), 0);
-                    let length = length(&rotation);
+                    let length = rigid::length(&rotation);
                     let found = PoseRecord { rotation, translation, pad: 0.0 };
                     if own == 0 {
                         lane.write(args.found, placement.pose + end, found);

@@ -15,7 +15,6 @@ use crate::exec::{Block, Lane};
 use crate::math::tolerance::POSE_UNIT;
 use crate::math::turn::{Turn, between, bulge};
 use crate::math::{Real, Vec3, rigid};
-use crate::stage::place::length;
 
 /// The turn of every body.
 pub fn turns<B: Block>(block: &mut B, args: &TurnsArgs) {
@@ -33,7 +32,7 @@ pub fn turns<B: Block>(block: &mut B, args: &TurnsArgs) {
                 if source.is_lent == 0 {
                     return pose;
                 }
-                let length = length(&pose.rotation);
+                let length = rigid::length(&pose.rotation);
                 is_pose &= Real::abs(length - 1.0) <= POSE_UNIT;
                 PoseRecord { rotation: pose.rotation.map(|q| q / length), ..pose }
             };

@@ -66,7 +66,7 @@ fn turn(step: &PoseStep, poses: [Pose; 2]) -> Turn {
         let length = pose.rotation.iter().map(|q| q * q).sum::<f64>().sqrt();
         pose.rotation.map(|q| q / length)
     };
-    let nearmiss::scene::Path::Turn { pivot, by } = step.path() else { panic!("it turns") };
+    let nearmiss::scene::PosePath::Turn { pivot, by } = step.path() else { panic!("it turns") };
     let phi = by.map_or_else(|| between(unit(poses[0]), unit(poses[1])), Vec3);
     let path = poses.map(|pose| Vec3(pose.apply(pivot)));
     Turn { phi, rows: rigid::rows(unit(poses[0])), pivot, path }

@@ -271,7 +271,7 @@ mod tests {
         let mesh = |at: u64| soup(20, at % 3, false).frames().swap_remove(0);
         let body = |at: u64| match at % 4 {
             0 => Ok(Body::fixed(mesh(at))),
-            _ => Body::rigid(mesh(at)).at(&Motion::Pose(Pose::at([at as f64, 1e6, 0.3]))),
+            _ => Body::rigid(mesh(at)).at(Motion::Pose(Pose::at([at as f64, 1e6, 0.3]))),
         };
         let bodies = (0..80).map(body).collect::<Result<Vec<_>, _>>()?;
         let layout = Layout::new(&bodies, Query::discrete().kind());

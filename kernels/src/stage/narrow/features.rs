@@ -333,10 +333,10 @@ impl<R: Real, C: Course<R>, B: Block, const HORIZON: bool> Tests<R, C, B, HORIZO
                 let test = lane.get(listed, i);
                 let (pair, k) = (pair_of(lane, test / TESTS), test % TESTS);
                 if i < vf {
-                    args.vf.put(lane, starts[0] + i as u64, vertex_and_face(&facet, pair, k));
+                    args.vf.put(lane, starts[0] + i as u64, vertex_and_face(facet, pair, k));
                 } else {
                     let place = starts[1] + (i - vf) as u64;
-                    args.ee.put(lane, place, two_edges(&facet, pair, k - 6));
+                    args.ee.put(lane, place, two_edges(facet, pair, k - 6));
                 }
                 i += lanes;
             }

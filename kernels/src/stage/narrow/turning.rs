@@ -40,9 +40,9 @@ pub fn features<B: Block>(block: &mut B, args: &TurningFeaturesArgs) {
                 while mask != 0 {
                     let test = mask.trailing_zeros();
                     if VERTICES >> test & 1 == 1 {
-                        args.vf.push(lane, vertex_and_face(&facet, pair, test));
+                        args.vf.push(lane, vertex_and_face(facet, pair, test));
                     } else {
-                        args.ee.push(lane, two_edges(&facet, pair, test - 6));
+                        args.ee.push(lane, two_edges(facet, pair, test - 6));
                     }
                     mask &= mask - 1;
                 }
