@@ -364,7 +364,6 @@ fn a_card_that_this_program_knows_nothing_of_is_an_error() {
 #[test]
 fn the_program_says_what_it_is() {
     assert_eq!(ok(&["--version"]).trim(), format!("nearmiss {}", env!("CARGO_PKG_VERSION")));
-    let help = ok(&["--help"]);
     let commands = |text: &str| -> Vec<String> {
         let below = text.split_once("Commands:\n").expect("commands").1;
         let lines = below.lines().take_while(|line| !line.is_empty());
@@ -376,8 +375,11 @@ fn the_program_says_what_it_is() {
         commands(&ok(&["lab", "--help"])),
         ["trade", "tables", "bench", "plan", "scene", "turns", "help"]
     );
+    assert_eq!(commands(&ok(&["--help"])), product);
     // The laboratory has one door.
-    for command in ["trade", "tables", "bench", "plan", "scene", "turns"] {
+    let lab = ["trade", "tables", "bench", "plan", "scene", "turns", "help"];
+    assert_eq!(commands(&ok(&["lab", "--help"])), lab);
+    for command in &lab[..6] {
         assert!(refused(2, &[command, "--help"]).contains("unrecognized subcommand"), "{command}");
         assert!(ok(&["lab", command, "-h"]).contains(&format!("nearmiss lab {command}")), "{command}");
     }
