@@ -156,6 +156,29 @@ typedef uint32_t NearmissClosest;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
+// How two triangles meet. The inside of a triangle is the triangle without its edges.
+enum NearmissPairKind
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // They cross: their insides share a point, and no plane holds both.
+    NEARMISS_CROSSING = 0,
+    // They touch in one point.
+    NEARMISS_TOUCH_POINT = 1,
+    // They touch in a segment: an edge is on a face or along an edge.
+    NEARMISS_TOUCH_SEGMENT = 2,
+    // They overlap in one plane, in an area.
+    NEARMISS_OVERLAP = 3,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum NearmissPairKind NearmissPairKind;
+#else
+typedef uint32_t NearmissPairKind;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
 // Types of entries of a list on the device. Vertices, triangles and edges are numbered through all
 // bodies.
 enum NearmissEntries
@@ -536,6 +559,9 @@ typedef struct {
     uint32_t kind;
     // Discrete. 1: also test triangles that share a vertex, beyond that vertex. 0: skip them.
     uint32_t adjacent;
+    // Discrete. 1: leave out triangles that touch without crossing, see `NEARMISS_CROSSING`. 0: list
+    // them too.
+    uint32_t only_crossing;
     // Continuous, earliest. 1: take the start of the step to be free of crossing triangles. 0:
     // count them.
     uint32_t assume_free;
@@ -575,6 +601,21 @@ typedef struct {
     // Unit vector from feature b to feature a. Zeros if no direction is defined.
     double normal[3];
 } NearmissGeometry;
+
+// How the triangles of a row meet, by exact signs, and the ends of their common segment.
+typedef struct {
+    // How they meet.
+    NearmissPairKind kind;
+    // For each end, the part of each triangle that holds it. 0: the inside. 1 to 3: the edges from
+    // corner 0, 1 and 2 to the next corner. 4 to 6: the corners. 255 for an overlap.
+    uint8_t parts[2][2];
+    // Both ends: the exact points, each coordinate rounded to the nearest double. Equal for a point,
+    // NaN for an overlap. The segment of two planes runs along the first normal times the second.
+    double ends[2][3];
+    // Upper bound of the error of each coordinate: 0 if both ends are corners, else half an ulp of
+    // the largest coordinate.
+    double error;
+} NearmissPairGeometry;
 
 // A list in memory of the device.
 typedef struct {
@@ -945,6 +986,15 @@ NearmissCode nearmiss_detector_geometry(NearmissDetector *detector,
                                         const NearmissGeometry **items,
                                         size_t *count,
                                         NearmissError *error);
+
+// How the triangles of every row of an answer to a discrete query meet, in the order of its rows. The
+// bodies must be where they were at the query. The list lives until the next call of this function
+// with the answer. The solver "moller" has no such list. Cost: some microseconds a row.
+NearmissCode nearmiss_detector_pair_geometry(NearmissDetector *detector,
+                                             NearmissAnswer *answer,
+                                             const NearmissPairGeometry **items,
+                                             size_t *count,
+                                             NearmissError *error);
 
 // Makes a handle, for `nearmiss_device_with_interrupt`.
 NearmissCode nearmiss_interrupt_create(NearmissInterrupt **interrupt, NearmissError *error);

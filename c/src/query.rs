@@ -50,8 +50,8 @@ pub struct NearmissQuery {
     pub kind: u32,
     /// Discrete. 1: also test triangles that share a vertex, beyond that vertex. 0: skip them.
     pub adjacent: u32,
-    /// Discrete. 1: leave out triangles that touch without crossing, see `NEARMISS_CROSSING`. 0: list
-    /// them too.
+    /// Discrete. 1: leave out triangles that touch without crossing, see `NEARMISS_CROSSING`. 0:
+    /// list them too.
     pub only_crossing: u32,
     /// Continuous, earliest. 1: take the start of the step to be free of crossing triangles. 0:
     /// count them.

@@ -73,8 +73,14 @@ impl Detector {
         start_threads()?;
         let known = self.none_lost().and_then(|()| self.download_positions());
         self.ended(known)?;
-        let bodies = self.scene.bodies();
-        pairs.par_iter().map(|pair| PairGeometry::of_bodies(pair, bodies).ok_or_else(of_others)).collect()
+        let (bodies, looks) = (self.scene.bodies(), self.device.looks());
+        let one = |pair| match PairGeometry::of_bodies(pair, bodies) {
+            _ if looks.ends() => Err(Error::Interrupted),
+            Some(geometry) => Ok(geometry),
+            None => Err(of_others()),
+        };
+        let geometry = pairs.par_iter().map(one).collect();
+        self.ended(geometry)
     }
 
     /// Computes the geometry of features. At rest they are at the start of the step.

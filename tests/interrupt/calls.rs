@@ -114,6 +114,17 @@ fn every_call_can_be_ended() {
 }
 
 #[test]
+fn geometry_of_pairs_ends_early() {
+    let mut own = detector(Query::discrete());
+    let found = own.detect().expect("an answer");
+    assert!(!found.is_empty());
+    let interrupt = own.interrupter();
+    interrupt.trigger();
+    interrupted(&interrupt, own.geometry(&found));
+    assert_eq!(own.geometry(&found).expect("of these bodies").len(), found.len());
+}
+
+#[test]
 fn geometry_can_be_asked_after_an_interrupt() {
     let mut own = detector(Query::continuous());
     let found = own.detect().expect("an answer");

@@ -31,7 +31,9 @@ fn sphere(rings: u32, radius: f64, about: [f64; 3]) -> Mesh {
 fn apart(meshes: impl IntoIterator<Item = Mesh>) -> Scene {
     let mut scene = Scene::new();
     let filter = CollisionFilter::without_self_collision;
-    meshes.into_iter().for_each(|mesh| drop(scene.add(Body::deformable(mesh).with_filter(filter()))));
+    for mesh in meshes {
+        scene.add(Body::deformable(mesh).with_filter(filter()));
+    }
     scene
 }
 

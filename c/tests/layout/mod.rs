@@ -104,7 +104,7 @@ impl Layout {
     fn shape(&self, of: &str) -> Shape {
         let size = match of {
             _ if of.ends_with('*') => 8,
-            "bool" | "char" => 1,
+            "bool" | "char" | "uint8_t" => 1,
             "uint32_t" | "float" => 4,
             "uint64_t" | "size_t" | "double" => 8,
             _ => return *self.shapes.get(of).unwrap_or_else(|| panic!("{of} is declared before it is used")),

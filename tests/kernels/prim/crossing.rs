@@ -10,7 +10,6 @@ use nearmiss_lab::oracle::{Triangle, exact};
 use nearmiss_lab::robustness::TRIANGLES;
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
-use rand::Rng;
 use rand::rngs::SmallRng;
 
 /// The kind of a meeting.

@@ -66,7 +66,7 @@ fn fault(curves: &Curves, geometry: &[PairGeometry], scene: &Scene) -> Option<St
                 return Some(format!("row {row} is in another group"));
             }
             let next: Vec<usize> = left.iter().copied().filter(|&other| shares(row, other)).collect();
-            next.iter().for_each(|row| drop(left.remove(row)));
+            left.retain(|row| !next.contains(row));
             found.extend(next);
         }
         number += 1;
