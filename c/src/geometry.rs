@@ -88,8 +88,9 @@ pub struct NearmissPairGeometry {
     /// For each end, the part of each triangle that holds it. 0: the inside. 1 to 3: the edges from
     /// corner 0, 1 and 2 to the next corner. 4 to 6: the corners. 255 for an overlap.
     pub parts: [[u8; 2]; 2],
-    /// Both ends: the exact points, each coordinate rounded to the nearest double. Equal for a point,
-    /// NaN for an overlap. The segment of two planes runs along the first normal times the second.
+    /// Both ends: the exact points, each coordinate rounded to the nearest double. Equal for a
+    /// point, NaN for an overlap. The segment of two planes runs along the first normal times the
+    /// second.
     pub ends: [[f64; 3]; 2],
     /// Upper bound of the error of each coordinate: 0 if both ends are corners, else half an ulp of
     /// the largest coordinate.
@@ -118,9 +119,9 @@ impl From<&PairGeometry> for NearmissPairGeometry {
     }
 }
 
-/// How the triangles of every row of an answer to a discrete query meet, in the order of its rows. The
-/// bodies must be where they were at the query. The list lives until the next call of this function
-/// with the answer. The solver "moller" has no such list. Cost: some microseconds a row.
+/// How the triangles of every row of an answer to a discrete query meet, in the order of its rows.
+/// The bodies must be where they were at the query. The list lives until the next call of this
+/// function with the answer. The solver "moller" has no such list. Cost: some microseconds a row.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_detector_pair_geometry(
     detector: Option<&mut NearmissDetector>,

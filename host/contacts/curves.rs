@@ -18,8 +18,8 @@ pub struct Curves {
     pub starts: Vec<usize>,
     /// Whether each curve is closed.
     pub is_closed: Vec<bool>,
-    /// Row of each segment, curve by curve. A curve has one segment less than points, so the segments
-    /// of curve `k` begin at `starts[k] - k`.
+    /// Row of each segment, curve by curve. A curve has one segment less than points, so the
+    /// segments of curve `k` begin at `starts[k] - k`.
     pub rows: Vec<u32>,
     /// Group of each curve, in ascending order of their first rows.
     pub groups: Vec<u32>,
@@ -85,14 +85,14 @@ struct Segment {
 /// Host memory for a row: its segment, two ends in a table, lists of both, and its faces.
 const OF_A_ROW: usize = 400;
 
-/// Chains the segments of the rows that [cross](PairKind::Crossing), and groups these rows. `bodies`
-/// are those of the scene, by number, and `geometry` is of the rows of a discrete answer.
+/// Chains the segments of the rows that [cross](PairKind::Crossing), and groups these rows.
+/// `bodies` are those of the scene, by number, and `geometry` is of the rows of a discrete answer.
 ///
-/// - Two segments are joined if an end of both is on the same features: the same vertex, edge or face
-///   of each body. No coordinate is compared. Ends that are joined have the same bits.
+/// - Two segments are joined if an end of both is on the same features: the same vertex, edge or
+///   face of each body. No coordinate is compared. Ends that are joined have the same bits.
 /// - A curve ends where no other segment or more than one continues it. That is at a border of a
-///   mesh, at a seam of vertices with equal coordinates, where an edge is on a face along the curve,
-///   and where more than two surfaces meet.
+///   mesh, at a seam of vertices with equal coordinates, where an edge is on a face along the
+///   curve, and where more than two surfaces meet.
 /// - A curve runs along the product of both normals, the first row's first body times its second.
 /// - Rows that share a triangle or an end are in one group.
 ///
@@ -186,8 +186,8 @@ impl Chains {
         self.at[end].len() == 2
     }
 
-    /// Chains all segments: those that begin at an end of a curve, along their direction if possible,
-    /// then those of closed curves.
+    /// Chains all segments: those that begin at an end of a curve, along their direction if
+    /// possible, then those of closed curves.
     fn curves(mut self, geometry: &[PairGeometry], row_groups: Vec<Option<u32>>) -> Curves {
         let mut curves = Curves { starts: vec![0], row_groups, ..Curves::default() };
         for is_along in [true, false] {

@@ -39,8 +39,8 @@ impl PairGeometry {
 
     /// (k, 2, 3) float64: both ends of the common segment, in the unit of the vertices.
     ///
-    /// The exact points, each coordinate rounded to the nearest double. Equal for a point, NaN for an
-    /// overlap. The segment of two planes runs along the first normal times the second.
+    /// The exact points, each coordinate rounded to the nearest double. Equal for a point, NaN for
+    /// an overlap. The segment of two planes runs along the first normal times the second.
     #[getter]
     fn ends<'py>(&self, py: Python<'py>) -> Column<'py> {
         self.columns.get(py, "ends", || {
@@ -82,9 +82,9 @@ impl PairGeometry {
 
 /// Curves in which surfaces cross, and groups of the rows that cross.
 ///
-/// Curve k has the points `starts[k]` to `starts[k + 1] - 1`. A closed curve has its first point again
-/// at its end. A curve has one segment less than points, so its segments begin at `starts[k] - k`.
-/// Columns are read-only numpy arrays.
+/// Curve k has the points `starts[k]` to `starts[k + 1] - 1`. A closed curve has its first point
+/// again at its end. A curve has one segment less than points, so its segments begin at `starts[k]
+/// - k`. Columns are read-only numpy arrays.
 #[pyclass(module = "nearmiss", frozen)]
 pub struct Curves {
     found: Found,

@@ -107,11 +107,12 @@ impl Cut {
         }
     }
 
-    /// Whether end 1 is after end 0 along the product of the normals of this triangle and the other.
+    /// Whether end 1 is after end 0 along the product of the normals of this triangle and the
+    /// other.
     ///
-    /// The ends follow the lone corner in the order of the corners. If that corner is above the other
-    /// plane (`side` 1, against its normal), the way from one to the other has the direction of the
-    /// product.
+    /// The ends follow the lone corner in the order of the corners. If that corner is above the
+    /// other plane (`side` 1, against its normal), the way from one to the other has the direction
+    /// of the product.
     fn is_ascending(&self) -> bool {
         self.side[self.chord.lone] > 0
     }

@@ -7,10 +7,10 @@ use nearmiss_kernels::prim::tri_tri::{Certain, Signs, point_on_triangle, segment
 
 /// Returns the common points of two triangles in one plane, or of two without area.
 ///
-/// They are the hull of the corners of each that the other holds, and of the points at which insides
-/// of edges cross. All of these are corners of the hull, and no two of different kinds are equal: a
-/// corner of a convex set is a corner of its part in another one. So one is a point, two are a
-/// segment, and more have an area.
+/// They are the hull of the corners of each that the other holds, and of the points at which
+/// insides of edges cross. All of these are corners of the hull, and no two of different kinds are
+/// equal: a corner of a convex set is a corner of its part in another one. So one is a point, two
+/// are a segment, and more have an area.
 pub fn common(t: [&Corners; 2]) -> Option<Common> {
     let shapes = [0, 1].map(|of| Shape::of(t[of]));
     let mut ends: Vec<End> = Vec::new();

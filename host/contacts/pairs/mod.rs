@@ -32,8 +32,8 @@ pub enum PairKind {
     Overlap = 3,
 }
 
-/// Part of a triangle that holds a point. Its number ([`Part::number`]) is used in files and in other
-/// languages.
+/// Part of a triangle that holds a point. Its number ([`Part::number`]) is used in files and in
+/// other languages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 pub enum Part {
@@ -78,8 +78,8 @@ pub struct PairGeometry {
     /// The segment of two planes is directed along the product of both normals, the first times the
     /// second.
     pub ends: Option<[[f64; 3]; 2]>,
-    /// Upper bound of the error of each coordinate of the ends, in scene units. It is 0 if both ends
-    /// are corners, else [`END_ERROR`] times the largest coordinate.
+    /// Upper bound of the error of each coordinate of the ends, in scene units. It is 0 if both
+    /// ends are corners, else [`END_ERROR`] times the largest coordinate.
     pub error: f64,
     /// For each end, the part of each triangle that holds it. `None` for an overlap.
     pub parts: Option<[[Part; 2]; 2]>,

@@ -1,7 +1,7 @@
 //! Coordinates of the ends of common segments: the exact points, rounded to the nearest doubles.
 //!
-//! A point divides an edge from `u` to `v` by its distances from a plane, or from a line in a plane.
-//! With the normal `n` and a point `z` of it, `d(w) = n . (z - w)`, and the point is
+//! A point divides an edge from `u` to `v` by its distances from a plane, or from a line in a
+//! plane. With the normal `n` and a point `z` of it, `d(w) = n . (z - w)`, and the point is
 //!
 //! `(u |d(v)| + v |d(u)|) / (|d(v)| + |d(u)|)`.
 //!
@@ -18,9 +18,10 @@
 //! |v_k| |d(u)|)`, and the denominator by `r + 3 u^2` of itself. So the coordinate errs by at most
 //! `max(|u_k|, |v_k|) (2 r + 26 u^2)`, up to higher orders. `2 r + 32 u^2` is used.
 //!
-//! All of this holds without underflow or overflow. Coordinates are 0 or within `2^-200` and `2^200`.
-//! So differences are 0 or above `2^-253`, a `d` that is not 0 is above `2^-760`, and numbers stay
-//! below `2^810`. Roundings below the smallest double change a `d` by less than `2^-300` of it.
+//! All of this holds without underflow or overflow. Coordinates are 0 or within `2^-200` and
+//! `2^200`. So differences are 0 or above `2^-253`, a `d` that is not 0 is above `2^-760`, and
+//! numbers stay below `2^810`. Roundings below the smallest double change a `d` by less than
+//! `2^-300` of it.
 
 use super::common::{Corners, End, Exactly};
 use super::two::Two;

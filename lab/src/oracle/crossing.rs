@@ -2,8 +2,8 @@
 //!
 //! Insides share a point if weights above 0 of both triangles give one: a linear program finds the
 //! largest least weight. The common points are the hull of points that are listed without thought:
-//! all corners, all points of lines of edges on planes, all common points of lines of edges. Another
-//! linear program keeps those that both triangles hold. Their rank is the dimension.
+//! all corners, all points of lines of edges on planes, all common points of lines of edges.
+//! Another linear program keeps those that both triangles hold. Their rank is the dimension.
 
 use super::simplex::{Outcome, maximize};
 use super::{Triangle, exact};
