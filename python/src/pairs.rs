@@ -83,8 +83,8 @@ impl PairGeometry {
 /// Curves in which surfaces cross, and groups of the rows that cross.
 ///
 /// Curve k has the points `starts[k]` to `starts[k + 1] - 1`. A closed curve has its first point
-/// again at its end. A curve has one segment less than points, so its segments begin at `starts[k]
-/// - k`. Columns are read-only numpy arrays.
+/// again at its end. Segments are one less than points: those of curve k begin at `starts[k] - k`.
+/// Columns are read-only numpy arrays.
 #[pyclass(module = "nearmiss", frozen)]
 pub struct Curves {
     found: Found,

@@ -307,6 +307,8 @@ class Discrete(Query["TrianglePairs"]):
     """Query for triangles that share a point at t = 0, by exact signs. Answer: TrianglePairs.
 
     - `adjacent`: also test triangles with a common vertex, for points beyond that vertex or edge.
+    - `only_crossing`: leave out triangles that touch without crossing: a wall that stands on a floor.
+      See PairKind.CROSSING.
     """
 
     def __new__(cls, *, adjacent: bool = False, only_crossing: bool = False) -> Discrete: ...
@@ -423,7 +425,7 @@ class TrianglePairs(Answer):
 
     @property
     def is_free(self) -> bool:
-        """Whether no two triangles share a point."""
+        """Whether no two triangles share a point; False with `only_crossing`, which does not show it."""
 
 class Contacts(Answer):
     """Answer of Continuous: features that meet within the step, a row a pair.
@@ -648,54 +650,73 @@ class Geometry:
         """(k, 3) float64: unit vectors from feature b to feature a; zeros if no direction is defined."""
 
 class PairGeometry:
-    """How"""
+    """How triangle pairs meet, and where: a row a pair, in the order of the answer.
+
+    Columns are read-only numpy arrays.
+    """
 
     def __len__(self) -> int: ...
 
     @property
     def kind(self) -> NDArray[np.uint8]:
-        """K"""
+        """(k,) uint8: how the triangles meet, see PairKind. By exact signs."""
 
     @property
     def ends(self) -> NDArray[np.float64]:
-        """K"""
+        """(k, 2, 3) float64: both ends of the common segment, in the unit of the vertices.
+
+        The exact points, each coordinate rounded to the nearest double. Equal for a point, NaN for
+        an overlap. The segment of two planes runs along the first normal times the second.
+        """
 
     @property
     def errors(self) -> NDArray[np.float64]:
-        """K"""
+        """(k,) float64: upper bound of the error of each coordinate of the ends.
+
+        0 if both ends are corners, else half an ulp of the largest coordinate.
+        """
 
     @property
     def parts(self) -> NDArray[np.uint8]:
-        """K"""
+        """(k, 2, 2) uint8: for each end, the part of each triangle that holds it.
+
+        0 is the inside. 1 to 3 are the edges from corner 0, 1 and 2 to the next corner, 4 to 6 the
+        corners. 255 for an overlap.
+        """
 
 class Curves:
-    """Curves"""
+    """Curves in which surfaces cross, and groups of the rows that cross.
+
+    Curve k has the points `starts[k]` to `starts[k + 1] - 1`. A closed curve has its first point
+    again at its end. Segments are one less than points: those of curve k begin at `starts[k] - k`.
+    Columns are read-only numpy arrays.
+    """
 
     def __len__(self) -> int: ...
 
     @property
     def points(self) -> NDArray[np.float64]:
-        """K"""
+        """(n, 3) float64: points of all curves, curve by curve, in the unit of the vertices."""
 
     @property
     def starts(self) -> NDArray[np.int64]:
-        """K"""
+        """(m + 1,) int64: the first point of each curve, and the number of points."""
 
     @property
     def is_closed(self) -> NDArray[np.bool_]:
-        """K"""
+        """(m,) bool: whether each curve is closed."""
 
     @property
     def rows(self) -> NDArray[np.uint32]:
-        """K"""
+        """(n - m,) uint32: the answer's row of each segment, curve by curve."""
 
     @property
     def groups(self) -> NDArray[np.uint32]:
-        """K"""
+        """(m,) uint32: the group of each curve. Rows that share a triangle or an end are in one group."""
 
     @property
     def row_groups(self) -> NDArray[np.int64]:
-        """K"""
+        """(k,) int64: the group of each row of the answer; -1 for rows that do not cross."""
 
 class DeviceArray:
     """Array in the memory of the device.
@@ -850,6 +871,7 @@ class Detector:
         """Return triangles that share a point at t = 0: the answer to Discrete.
 
         - `adjacent`: also test triangles with a common vertex, for points beyond that vertex or edge.
+        - `only_crossing`: leave out triangles that touch without crossing.
         """
 
     def continuous(
@@ -895,10 +917,25 @@ class Detector:
     def geometry(self, answer: Contacts | NearPairs) -> Geometry: ...
     @overload
     def geometry(self, answer: TrianglePairs) -> PairGeometry:
-        """Return"""
+        """Return where the features or triangles of an answer's rows meet.
+
+        - `answer`: an answer of this detector. Bodies must not have moved since.
+
+        Returns Geometry for Contacts and NearPairs: vertices, weights, points and normals. Returns
+        PairGeometry for TrianglePairs: how they meet, and the segment in which they do.
+        Raises InvalidArgumentError for other answers, and for those of the solver "moller".
+        """
 
     def curves(self, answer: TrianglePairs) -> Curves:
-        """Return"""
+        """Return the curves in which surfaces cross, chained from the rows that cross.
+
+        - `answer`: TrianglePairs of this detector. Bodies must not have moved since.
+
+        Segments are joined by the vertex, edge or face of each body that holds their ends, never by
+        coordinates. A curve ends at a border, at a seam of equal vertices, where an edge lies on a face,
+        and where more than two surfaces meet.
+        Raises InvalidArgumentError for other answers.
+        """
 
     def summary(self, answer: Answer) -> dict[str, Any]:
         """Return all figures of an answer as a dictionary, as the program prints them with --json.
