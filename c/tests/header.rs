@@ -178,6 +178,8 @@ fn the_compiler_lays_out_the_same() {
         NearmissNearPair,
         NearmissNearest,
         NearmissNumber,
+        NearmissPairGeometry,
+        NearmissPairKind,
         NearmissPose,
         NearmissPoseRows,
         NearmissQuery,

@@ -8,18 +8,19 @@
 //!
 //! Let both have area. They cross if and only if the plane of each has corners of the other
 //! strictly on both sides, and the two chords overlap in more than a point. The chords are on the
-//! common line of both planes. A chord has its ends on the edges from one corner, the *lone* one, which
-//! is strictly on one side: the other two corners are strictly on the other side or on the plane.
+//! common line of both planes. A chord has its ends on the edges from one corner, the *lone* one,
+//! which is strictly on one side: the other two corners are strictly on the other side or on the
+//! plane.
 //!
-//! Let `a` be the lone corner of `p`, `b` the far corner of the edge with the end `i`, and `d`, `e`,
-//! `j` those of `q`. Then `b = a + s (i - a)` and `e = d + r (j - d)` with `s, r >= 1`. So
-//! `orient(a, b, d, e) = s r orient(a, i, d, j)`, which is `i - j` along the line times a number whose
-//! sign `a` and `d` determine. The four signs of both ends of `p` about both ends of `q` are therefore
-//! the order of the ends, up to a common sign. Chords overlap in more than a point if and only if one
-//! sign is above 0 and one below. They share a point unless all are above or all below.
+//! Let `a` be the lone corner of `p`, `b` the far corner of the edge with the end `i`, and `d`,
+//! `e`, `j` those of `q`. Then `b = a + s (i - a)` and `e = d + r (j - d)` with `s, r >= 1`. So
+//! `orient(a, b, d, e) = s r orient(a, i, d, j)`, which is `i - j` along the line times a number
+//! whose sign `a` and `d` determine. The four signs of both ends of `p` about both ends of `q` are
+//! therefore the order of the ends, up to a common sign. Chords overlap in more than a point if and
+//! only if one sign is above 0 and one below. They share a point unless all are above or all below.
 //!
-//! Let `p` have no area. It crosses `q` if the plane of `q` has corners of `p` strictly on both sides,
-//! and the line from one to the other passes all edges of `q` strictly on one side.
+//! Let `p` have no area. It crosses `q` if the plane of `q` has corners of `p` strictly on both
+//! sides, and the line from one to the other passes all edges of `q` strictly on one side.
 
 use super::signs::Signs;
 use crate::math::{Real, Vec3};
@@ -76,8 +77,8 @@ pub fn crosses<R: Real, S: Signs<R>>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> Opti
     }
 }
 
-/// The orders of the ends of two chords along the line of both, up to a common sign: `orders[i][j]` of
-/// end `i` of `p` and end `j` of `q`. 0 if they are one point.
+/// The orders of the ends of two chords along the line of both, up to a common sign: `orders[i][j]`
+/// of end `i` of `p` and end `j` of `q`. 0 if they are one point.
 pub fn order<R: Real, S: Signs<R>>(
     (p, of_p): (&[Vec3<R>; 3], Chord),
     (q, of_q): (&[Vec3<R>; 3], Chord),
