@@ -24,6 +24,10 @@ fn changed(case: &Case, vertex: fn(&mut Motion<3>), edge: fn(&mut Motion<4>)) ->
     }
 }
 
+fn of(name: &str) -> usize {
+    FAMILIES.iter().position(|family| *family == name).expect("a family")
+}
+
 fn faults(row: &Row) -> u64 {
     row.missed + row.late + row.falsely_certain + row.far_undecided
 }
@@ -66,7 +70,7 @@ fn bounds_of_a_fiftieth_are_noticed() {
         weak(&mut motion.rates.second);
         weak(&mut motion.rates.third);
     }
-    let row = hunt(1, 0, 40, MOST, |c| changed(c, weaken, weaken));
+    let row = hunt(1, of("generic"), 40, MOST, |c| changed(c, weaken, weaken));
     assert!(row.missed > 5, "{row:?}");
 }
 
@@ -76,7 +80,6 @@ fn places_without_an_error_are_noticed() {
     fn exact<const N: usize>(motion: &mut Motion<N>) {
         motion.error = f64::MIN_POSITIVE;
     }
-    let of = |name: &str| FAMILIES.iter().position(|f| *f == name).expect("a family");
     let names = ["tangent", "coin", "sliding edges", "at the start"];
     let rows = names.map(|name| hunt(4, of(name), 250, MOST, |c| changed(c, exact, exact)));
     assert!(rows.iter().map(faults).sum::<u64>() > 0, "{rows:?}");
@@ -94,7 +97,7 @@ fn a_certificate_without_its_radius_is_noticed() {
         let (from, to) = (motion.at((c.t - 1e-6).max(0.0)), motion.at((c.t + 1e-6).min(1.0)));
         motion.contact_by(&from, &to, c.tolerance * motion.scale, &mut -1.0, |moved| part * moved)
     }
-    let family = FAMILIES.len() - 1;
+    let family = of("slow on borders");
     let wrong = |part: f64| {
         let is_wrong = |i: &u64| {
             let c = case(5, family, *i);
