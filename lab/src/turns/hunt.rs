@@ -28,9 +28,9 @@ pub struct Row {
     pub late: u64,
     /// A certain contact that is none: a bug.
     pub falsely_certain: u64,
-    /// Undecided, and farther apart than half the tolerance: a bug.
+    /// Undecided and not exhausted, and farther apart than half the tolerance: a bug.
     pub far_undecided: u64,
-    /// The slices ended.
+    /// The slices ended, or became too short.
     pub exhausted: u64,
     /// Undecided, inside both features, with a gap of at least 1e-11.
     pub open: u64,
@@ -55,7 +55,7 @@ pub enum Fault {
     Late,
     /// A certain contact that is none.
     FalselyCertain,
-    /// Undecided, and farther apart than half the tolerance.
+    /// Undecided and not exhausted, and farther apart than half the tolerance.
     FarUndecided,
 }
 
@@ -94,6 +94,7 @@ pub fn fault(verdict: &Verdict, known: &Known, case: &Case) -> Option<Fault> {
         Answer::Contact { toi_upper, .. } => {
             (known.is_apart() || toi_upper < known.not_before).then_some(Fault::FalselyCertain)
         }
+        Answer::Undecided { .. } if verdict.exhausted() => None,
         Answer::Undecided { toi, .. } => {
             let far = case.separation + 0.5 * case.tolerance + room(&case.pair);
             let distance = Judge::new(&case.pair, case.separation).distance(toi);

@@ -27,7 +27,8 @@
 //! 2. Otherwise the first contact, if there is one, is not before `toi`.
 //! 3. Contact: there is a contact, and the first is in `[toi, toi_upper]`.
 //! 4. Undecided, unless exhausted: at `toi` the features are within the separation and half the
-//!    tolerance. A tolerance below 64 errors of a control vector counts as 64 errors
+//!    tolerance. Exhausted are also edges almost parallel whose slices become too short, at
+//!    tolerances near the least. A tolerance below 64 errors of a control vector counts as 64 errors
 //!    (`TURNING_PLACE`, `TURNING_FINEST`).
 //!
 //! The proof:
