@@ -141,7 +141,7 @@ mod tests {
         for input in
             [Motion::positions(far.positions_t0()), Motion::step(far.positions_t0(), far.positions_t0())]
         {
-            body = body.at(&input).expect("a place");
+            body = body.at(input).expect("a place");
             assert_eq!(body.default_tolerance(), 2f64.powi(-12));
         }
         assert!(body.rest());

@@ -88,7 +88,7 @@ fn poses_have_the_geometry_of_placed_vertices() {
     };
     let mut rigid = Scene::new();
     for mesh in meshes() {
-        rigid.add(of(Body::rigid, mesh).at(&Motion::pose(pose)).expect("a place"));
+        rigid.add(of(Body::rigid, mesh).at(Motion::pose(pose)).expect("a place"));
     }
     let placed = meshes().map(|mesh| {
         let points = mesh.positions().to_f64().into_iter().map(|point| pose.apply(point)).collect();

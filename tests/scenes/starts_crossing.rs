@@ -64,7 +64,7 @@ fn random_scene(seed: u64) -> Scene {
             0 => Body::fixed(t0),
             1 => {
                 let end = Pose { rotation: [0.1, 0.0, 0.0, 0.99f64.sqrt()], translation: [0.1, 0.0, 0.2] };
-                Body::rigid(t0).at(&Motion::PoseStep([Pose::default(), end].into())).expect("poses")
+                Body::rigid(t0).at(Motion::PoseStep([Pose::default(), end].into())).expect("poses")
             }
             _ => Body::moving(t0, t1).expect("two frames"),
         };

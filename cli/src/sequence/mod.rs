@@ -177,7 +177,7 @@ impl Sequence {
         for (body, track) in self.bodies.iter().zip(&self.tracks) {
             let body = body.clone();
             bodies.push(match track.input(0, at_rest) {
-                Some(input) => body.at(&input)?,
+                Some(input) => body.at(input)?,
                 None => body,
             });
         }

@@ -66,7 +66,9 @@ impl Whole {
         }
         match magnitude_order(own, others) {
             Ordering::Less => Whole { is_negative: other.is_negative, limbs: difference(others, own) },
-            _ => Whole { is_negative: self.is_negative, limbs: difference(own, others) },
+            Ordering::Equal | Ordering::Greater => {
+                Whole { is_negative: self.is_negative, limbs: difference(own, others) }
+            }
         }
         .trimmed()
     }

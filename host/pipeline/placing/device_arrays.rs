@@ -91,7 +91,8 @@ impl<R: Precision> Placing<R> {
     /// # Errors
     /// Device errors.
     pub fn again(&mut self, device: &Device) -> Result<(), Error> {
-        let Last::Device(args, turns) = &self.last else { return Ok(()) };
+        let Last::Device(args) = &self.last else { return Ok(()) };
+        let (args, turns) = &**args;
         self.is_at_rest_current = false;
         if self.arrays.any {
             self.arrays.seen.clear()?;

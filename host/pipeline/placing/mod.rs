@@ -96,7 +96,7 @@ enum Last<R: Real> {
     /// None.
     Nothing,
     /// Device memory: it can be placed again.
-    Device(PlaceArgs<R>, TurnsArgs),
+    Device(Box<(PlaceArgs<R>, TurnsArgs)>),
     /// Host memory.
     Host,
 }
@@ -367,7 +367,7 @@ impl<R: Precision> Placing<R> {
         self.turns.hold(device, turning)?;
         let of_turns = self.turns.args(args.poses, args.found);
         let is_repeatable = uploaded == 0 && poses.is_empty();
-        self.last = if is_repeatable { Last::Device(args, of_turns) } else { Last::Host };
+        self.last = if is_repeatable { Last::Device(Box::new((args, of_turns))) } else { Last::Host };
         launch::striding::<R::Place>(&device.undisturbed(), before as usize, &args)?;
         turns::launch(device, &of_turns)
     }

@@ -38,7 +38,7 @@ pub fn meeting(p: &Triangle, q: &Triangle) -> Option<Meeting> {
     let dimension = rank(points.iter().map(|x| minus(x, &first)).collect());
     let is_flat = rank(p.iter().chain(&q).map(|x| minus(x, &p[0])).collect()) < 3;
     let is_crossing = !is_flat && insides_meet(&p, &q);
-    Some(Meeting { is_crossing, dimension, ends: (dimension < 2).then(|| [first, last]) })
+    Some(Meeting { is_crossing, dimension, ends: (dimension < 2).then_some([first, last]) })
 }
 
 /// All points that may be corners of the common points, and more.

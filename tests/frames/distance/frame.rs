@@ -187,7 +187,7 @@ fn a_body_comes_and_goes() {
         let found = detector.frame(&[(id, Motion::pose(pose))]).expect("an answer");
         let mut there = scene.clone();
         let body = there.remove(id).expect("the ball");
-        assert_eq!(there.add(body.at(&Motion::pose(pose)).expect("a pose")), id);
+        assert_eq!(there.add(body.at(Motion::pose(pose)).expect("a pose")), id);
         let anew: Contacts = ask_scene(engine(), there, Query::distance());
         assert_eq!(found.rows, anew.rows, "step {step}");
         touched += u32::from(found.distance() == Some(0.0));

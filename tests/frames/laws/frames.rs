@@ -83,7 +83,7 @@ fn fresh(bodies: &[Placed], query: Query) -> Contacts {
     for placed in bodies {
         let body = placed.body.clone();
         let body = match placed.place.input(false) {
-            Some(input) => body.at(&input).expect("a place"),
+            Some(input) => body.at(input).expect("a place"),
             None => body,
         };
         scene.add(body);

@@ -40,7 +40,7 @@ fn body(rng: &mut SmallRng, (size, at, is_f64): (f64, f64, bool)) -> Body {
     let mesh = mesh(rng, size, at, is_f64);
     match rng.random_range(0..5) {
         0 => Body::fixed(mesh),
-        1 => Body::rigid(mesh).at(&Motion::PoseStep([pose(rng), pose(rng)].into())).expect("poses"),
+        1 => Body::rigid(mesh).at(Motion::PoseStep([pose(rng), pose(rng)].into())).expect("poses"),
         2 => Body::deformable(mesh),
         _ => {
             let end = moved(rng, mesh.positions(), 0.5 * size);

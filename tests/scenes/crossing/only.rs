@@ -67,7 +67,7 @@ fn only_crossing_instances() {
     for k in 0..4u32 {
         let pose = Pose { rotation: [0.0, 0.0, 1.0, 0.0], translation: [f64::from(k), 1.0, 0.0] };
         let body = Body::rigid(touching(k.into(), 15, true, false));
-        scene.add(body.at(&Motion::pose(pose)).expect("a place"));
+        scene.add(body.at(Motion::pose(pose)).expect("a place"));
     }
     let (wanted, all) = wanted(&scene, &Discrete::default());
     assert!(wanted.len() > 10 && all > wanted.len() + 10, "{} of {all}", wanted.len());

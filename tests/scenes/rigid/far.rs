@@ -8,7 +8,7 @@ use nearmiss_lab::oracle::{Triangle, triangles_meet};
 fn scene_of(bodies: &[(Mesh, Pose)]) -> Scene {
     let mut scene = Scene::new();
     for (mesh, pose) in bodies {
-        scene.add(Body::rigid(mesh.clone()).at(&Motion::pose(*pose)).expect("a pose"));
+        scene.add(Body::rigid(mesh.clone()).at(Motion::pose(*pose)).expect("a pose"));
     }
     scene
 }
@@ -57,7 +57,7 @@ fn pairs_near_touching_are_as_exact_arithmetic_has_them() {
             let mesh =
                 Mesh::new("one", Positions::F32(corners[k].to_vec()), vec![[0, 1, 2]]).expect("a mesh");
             let body = Body::rigid(mesh).with_filter(CollisionFilter::in_environment(world));
-            scene.add(body.at(&Motion::pose(poses[k])).expect("a pose"));
+            scene.add(body.at(Motion::pose(poses[k])).expect("a pose"));
             shape.push(wide[k].map(|corner| poses[k].apply(corner)));
         }
         shapes.push(shape);
@@ -79,7 +79,7 @@ fn pairs_near_touching_are_as_exact_arithmetic_has_them() {
 fn a_small_sphere_far_away_does_not_meet_itself() {
     let sphere = Body::rigid(sphere(24, 0.01)).with_filter(CollisionFilter::with_self_collision());
     for place in [[1e5; 3], [1e5, -3e5, 7e4]] {
-        let at = sphere.clone().at(&Motion::pose(Pose::at(place))).expect("a pose");
+        let at = sphere.clone().at(Motion::pose(Pose::at(place))).expect("a pose");
         assert_eq!(ask(&Scene::from(vec![at]), Query::discrete()).len(), 0);
     }
 }
@@ -152,7 +152,7 @@ fn a_rigid_mesh_may_be_as_large_as_any() {
         Body::rigid(Mesh::new("large", Positions::F64(corners), vec![[0, 1, 2]]).expect("a mesh"))
     };
     for size in [0.51 * most, most] {
-        let at = large(size).at(&Motion::pose(Pose::default())).expect("it is where its mesh is");
+        let at = large(size).at(Motion::pose(Pose::default())).expect("it is where its mesh is");
         let other = Body::rigid(unit_box());
         let mut detector = OneQuery::new(engine(), vec![at, other], Query::discrete()).expect("a detector");
         let ids: Vec<BodyId> = detector.scene().ids().collect();

@@ -159,7 +159,7 @@ impl Told {
         let mut all: Vec<_> = self.bodies.iter().collect();
         all.sort_by_key(|(id, ..)| *id);
         let at = |(_, body, place): &&(BodyId, Body, Place)| match place.input() {
-            Some(input) => body.clone().at(&input).expect("a place"),
+            Some(input) => body.clone().at(input).expect("a place"),
             None => body.clone(),
         };
         let ids: Vec<BodyId> = all.iter().map(|own| scene.add(at(own))).collect();

@@ -154,7 +154,8 @@ fn a_bad_row_is_named_and_moves_nothing() {
     let mut lost = p.clone();
     lost[11][2] = f64::NAN;
     let gone = scene.clone().add(Body::rigid(soup(3, 1).0));
-    let table: Vec<(Vec<BodyId>, &[[f64; 3]], &[[f64; 4]], bool, &[&str])> = vec![
+    type Refused<'a> = (Vec<BodyId>, &'a [[f64; 3]], &'a [[f64; 4]], bool, &'a [&'a str]);
+    let table: Vec<Refused> = vec![
         (bodies.clone(), &p[..11], &q, false, &["positions have 11 rows and quaternions 12, for 12 bodies"]),
         (bodies[..3].to_vec(), &p, &q, false, &["positions have 12 rows", "for 3 bodies"]),
         (with(5, gone), &p, &q, false, &["row 5 names body 13", "not in the scene"]),
@@ -195,7 +196,7 @@ fn a_body_begins_where_it_is_put() {
     assert_eq!(body().at(step).expect("a step").pose_step(), step);
     assert_eq!(
         body().at(Motion::pose(start)).expect("a pose"),
-        body().at(&Motion::pose(start)).expect("a pose")
+        body().at(Motion::pose(start)).expect("a pose")
     );
     let (mesh, [_, there]) = soup(3, 2);
     let moved = Body::deformable(mesh).at(Motion::positions(&there)).expect("positions");

@@ -74,7 +74,7 @@ fn every_error_is_of_its_class() {
             "a body's pose",
             class(
                 Body::rigid(mesh(corners(0.0), [0; 3]).expect("a mesh"))
-                    .at(&Motion::pose(Pose::at([f64::NAN; 3]))),
+                    .at(Motion::pose(Pose::at([f64::NAN; 3]))),
             ),
         ),
         ("more vertices", class(moved(still(more, [0, 1, 2]).expect("a body")))),

@@ -74,7 +74,7 @@ fn at_first_step(all: &Bodies) -> Result<Scene, Error> {
         let Some(body) = all.scene.get(id).cloned() else { continue };
         let to = moves.iter().find(|(moved, _)| *moved == id);
         scene.add(match to {
-            Some((_, to)) => body.at(&to.input())?,
+            Some((_, to)) => body.at(to.input())?,
             None => body,
         });
     }
