@@ -301,9 +301,14 @@ enum NearmissMotionKind
     NEARMISS_MOTION_STEP = 1,
     // A rigid body rests in `poses[0]`.
     NEARMISS_MOTION_POSE = 2,
-    // A rigid body moves from `poses[0]` to `poses[1]`, each vertex in a straight line. Between
-    // the poses it is not rigid, so give steps in which it turns little.
+    // A rigid body moves from `poses[0]` to `poses[1]`. It turns at a constant rate by the shorter
+    // arc, about `pivot`, which moves in a straight line. At exactly 180 degrees the axis is that
+    // with a positive first coordinate; if this is 0, a positive second or third one. If `straight`
+    // is 1, each vertex moves in a straight line, and the body is not rigid on the way.
     NEARMISS_MOTION_POSE_STEP = 3,
+    // A rigid body moves from `poses[0]`. It turns at a constant rate by the rotation vector `turn`
+    // about `pivot`, which moves by `travel` in a straight line.
+    NEARMISS_MOTION_TURNING = 4,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -465,6 +470,15 @@ typedef struct {
     uint32_t number;
 } NearmissRows;
 
+// A rigid motion of the points of a body's mesh: a rotation, then a translation.
+typedef struct {
+    // A unit quaternion: x, y, z, w. Its length may differ from 1 by up to 1.2e-4 (2^-13); it is
+    // normalised.
+    double rotation[4];
+    // Added after the rotation, in the unit of the positions.
+    double translation[3];
+} NearmissPose;
+
 // A body to add to a scene: mesh, kind, and collision filter. Begin with `nearmiss_body()`. Calls
 // copy everything that it points to.
 typedef struct {
@@ -489,19 +503,12 @@ typedef struct {
     uint32_t group;
     // Bits of the groups that it collides with. 0: it collides with no other body.
     uint32_t mask;
+    // The pose of a rigid body at the start.
+    NearmissPose pose;
 } NearmissBody;
 
-// A rigid motion of the points of a body's mesh: a rotation, then a translation.
-typedef struct {
-    // A unit quaternion: x, y, z, w. Its length may differ from 1 by up to 1.2e-4 (2^-13); it is
-    // normalised.
-    double rotation[4];
-    // Added after the rotation, in the unit of the positions.
-    double translation[3];
-} NearmissPose;
-
 // The motion of a body in a step, or its place at rest. Make it by `nearmiss_motion_positions`,
-// `_step`, `_pose` or `_pose_step`. Fields that `kind` does not read must be empty.
+// `_step`, `_pose`, `_pose_step` or `_turning`. Fields that `kind` does not read must be empty.
 typedef struct {
     // The number of the body.
     uint32_t body;
@@ -512,12 +519,22 @@ typedef struct {
     // answered; of a prepared submission until the next update. A pose on the device is a row of
     // three numbers in `positions` and a row of four in `rotations`.
     uint32_t on_device;
+    // 1: the vertices of a pose step go straight. 0: it turns. Poses on the device always turn.
+    uint32_t straight;
     // One row a vertex. For a pose on the device: its translation.
     NearmissRows positions[2];
     // For a pose on the device: its unit quaternion x, y, z, w.
     NearmissRows rotations[2];
     // Poses in memory of the host.
     NearmissPose poses[2];
+    // The point about which the step turns, in the frame of the mesh: a centre of mass, a hinge.
+    // Zeros on the device: poses there turn about the origin of the mesh.
+    double pivot[3];
+    // The rotation vector of a turning step, in the axes of the scene and in radians: angular
+    // velocity times the length of the step. At most a whole turn, 2 pi.
+    double turn[3];
+    // How far the pivot of a turning step moves.
+    double travel[3];
 } NearmissMotion;
 
 // Choices for research. NULL is the default. Volumes, trees and tiles change no answer; a solver
@@ -636,6 +653,16 @@ typedef struct {
     // Length of `starts`: the number of bodies, and one more.
     size_t start_count;
 } NearmissDeviceAnswer;
+
+// Poses of many bodies, one row a body. Begin with `nearmiss_pose_rows()`.
+typedef struct {
+    // Translations, three numbers a row.
+    NearmissRows positions;
+    // Unit quaternions x, y, z, w, four numbers a row.
+    NearmissRows quaternions;
+    // 0: memory of the host. 1: memory of the detector's device; see `NearmissMotion`.
+    uint32_t on_device;
+} NearmissPoseRows;
 
 // Milliseconds of each stage of a query, by the device's clock; `launch` and `wall` by the host's.
 // For diagnosis: stages may change.
@@ -996,6 +1023,26 @@ void nearmiss_interrupt_clear(const NearmissInterrupt *interrupt);
 // Frees the handle. Its devices and detectors stay.
 void nearmiss_interrupt_free(NearmissInterrupt *interrupt);
 
+// The pose of a matrix of 16 doubles, row by row: a rotation and, in the last column, a
+// translation. The last row is 0 0 0 1. Columns may be off unit length, and scalar products of two
+// of them off 0, by up to 1.2e-4; the nearest rotation is taken.
+//
+// Fails with `NEARMISS_INPUT` for a number that is not finite, another last row, scale, shear and a
+// mirror image. The message names the number.
+//
+// # Safety
+// A `matrix` that is not NULL has 16 doubles.
+NearmissCode nearmiss_pose_from_matrix(const double *matrix,
+                                       NearmissPose *pose,
+                                       NearmissError *error);
+
+// Writes the matrix of a pose as 16 doubles, row by row: see `nearmiss_pose_from_matrix`. The
+// quaternion is normalised first.
+//
+// # Safety
+// A `matrix` that is not NULL has room for 16 doubles.
+NearmissCode nearmiss_pose_matrix(NearmissPose pose, double *matrix, NearmissError *error);
+
 // A deformable body at rest. If the positions are in memory of the device, set `on_device` then.
 NearmissMotion nearmiss_motion_positions(uint32_t body, NearmissRows positions);
 
@@ -1006,8 +1053,41 @@ NearmissMotion nearmiss_motion_step(uint32_t body, NearmissRows start, NearmissR
 // A rigid body at rest.
 NearmissMotion nearmiss_motion_pose(uint32_t body, NearmissPose pose);
 
-// A rigid body that moves from one pose to another, each vertex in a straight line.
+// A rigid body that moves from one pose to another. It turns by the shorter arc about the origin of
+// its mesh. Set `pivot` for another point, or `straight` for straight lines.
 NearmissMotion nearmiss_motion_pose_step(uint32_t body, NearmissPose start, NearmissPose end);
+
+// A rigid body that begins in a pose and turns by a rotation vector. Set `turn` then, and `travel`
+// and `pivot` unless they are 0. Turns of more than 180 degrees need it: two poses cannot say them.
+NearmissMotion nearmiss_motion_turning(uint32_t body, NearmissPose start);
+
+// Writes the number of the body with that name to `id`.
+//
+// Fails with `NEARMISS_INVALID_ARGUMENT` if no body has the name, or several have. The message
+// lists them.
+//
+// # Safety
+// `name` is a text.
+NearmissCode nearmiss_scene_id(const NearmissScene *scene,
+                               const char *name,
+                               uint32_t *id,
+                               NearmissError *error);
+
+// Writes the number of the body with that name to `id`. Fails as `nearmiss_scene_id`.
+//
+// # Safety
+// `name` is a text.
+NearmissCode nearmiss_detector_id(NearmissDetector *detector,
+                                  const char *name,
+                                  uint32_t *id,
+                                  NearmissError *error);
+
+// Writes the name of a body, in UTF-8, to `name`. The text lives until the next call of this
+// function with the detector.
+NearmissCode nearmiss_detector_name(NearmissDetector *detector,
+                                    uint32_t body,
+                                    const char **name,
+                                    NearmissError *error);
 
 // Makes the notes of an answer and counts them. Read each by `nearmiss_answer_note`. The bodies
 // must be where they were at the query. Most answers have none. Cost: a comparison of both ends of
@@ -1055,6 +1135,36 @@ NearmissCode nearmiss_detector_plan(NearmissDetector *detector,
                                     const char **json,
                                     NearmissError *error);
 
+// Poses of many bodies in memory of the host. If they are in memory of the device, set `on_device`
+// then.
+NearmissPoseRows nearmiss_pose_rows(NearmissRows positions, NearmissRows quaternions);
+
+// Moves many rigid bodies at once: `bodies[k]` to row `k` of the poses. As
+// `nearmiss_detector_update` with a pose for each, or with a pose step if `end` is not NULL. Bodies
+// that are not named rest.
+//
+// Fails with `NEARMISS_INVALID_ARGUMENT` for other numbers of rows, and for a body that is not
+// there, named twice or not rigid. Fails with `NEARMISS_INPUT` for an invalid pose. The message
+// names the row and the body, and nothing has moved. Poses in memory of a GPU are checked when a
+// query reads them.
+//
+// # Safety
+// So many numbers of bodies are there, and the rows.
+NearmissCode nearmiss_detector_update_poses(NearmissDetector *detector,
+                                            const uint32_t *bodies,
+                                            size_t body_count,
+                                            const NearmissPoseRows *start,
+                                            const NearmissPoseRows *end,
+                                            NearmissError *error);
+
+// Poses of a rigid body at the start and at the end of its step, equal if it rests. Either may be
+// NULL. Cost: if a body was moved from memory of the device, a copy of all vertices, and a wait.
+NearmissCode nearmiss_detector_body_poses(NearmissDetector *detector,
+                                          uint32_t body,
+                                          NearmissPose *start,
+                                          NearmissPose *end,
+                                          NearmissError *error);
+
 // Positions of a body at the start and at the end of the step, as three doubles a vertex. `start`
 // and `end` have room for `vertex_count` vertices, as many as the body has. Either may be NULL.
 // Both ends are equal for a body at rest. Vertices of a rigid body are in its poses. Cost: if a
@@ -1072,10 +1182,10 @@ NearmissCode nearmiss_detector_download_positions(NearmissDetector *detector,
 // A query of a `NearmissQueryKind` with defaults. Set `distance` of a near query.
 NearmissQuery nearmiss_query(uint32_t kind);
 
-// `count` points of three floats, without gaps.
+// `count` rows of floats without gaps: points of three, or quaternions of four.
 NearmissRows nearmiss_floats(const float *points, size_t count);
 
-// `count` points of three doubles, without gaps.
+// `count` rows of doubles without gaps: points of three, or quaternions of four.
 NearmissRows nearmiss_doubles(const double *points, size_t count);
 
 // A scene without bodies.

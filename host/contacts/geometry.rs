@@ -104,7 +104,7 @@ impl ContactGeometry {
             Kind::Ee => sides(0, 1).cross(sides(2, 3)),
         };
         let extent = now.iter().map(|p| length(*p - now[0])).fold(0.0, f64::max);
-        // Where a body turns, a gap at the start tells nothing of the approach: its motion does.
+        // The gap at the start of a turn says nothing of the approach. The motion does.
         let came = if corners.turns { gap(&start) - gap(&end) } else { gap(&start) };
         let normal = if length(apart) > DIRECTION * extent {
             apart

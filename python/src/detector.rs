@@ -11,11 +11,10 @@ use crate::pairs::{Curves, PairGeometry};
 use crate::pose::Pose;
 use crate::query::{Accuracy, Query, discrete, iterations_of, near, queries_of};
 use crate::rows::TrianglePairs;
-use crate::scene::{Body, Scene, scene_of};
+use crate::scene::Body;
 use crate::turns::python;
-use crate::watch::watched;
 use nearmiss::Interrupt;
-use nearmiss::contacts::{Geometry as Places, crossing_curves};
+use nearmiss::contacts::Geometry as Places;
 use nearmiss::research::DetectorExt;
 use nearmiss::scene::BodyId;
 use nearmiss::words::counted;
@@ -47,23 +46,7 @@ impl Detector {
     #[new]
     #[pyo3(signature = (scene, *, device = None))]
     fn new(py: Python<'_>, scene: &Bound<'_, PyAny>, device: Option<Py<Device>>) -> PyResult<Detector> {
-        let device = match device {
-            Some(device) => device,
-            None => py.get_type::<Device>().call0()?.cast_into::<Device>()?.unbind(),
-        };
-        let bodies = scene_of(scene)?;
-        let (turn, interrupt) = (&device.get().turn, Interrupt::new());
-        let on = device.get().device.clone().with_interrupt(&interrupt);
-        let detector = watched(py, &interrupt, |watch| {
-            let _turn = watch.lock(turn)?;
-            watch.begins();
-            nearmiss::Detector::new(on, bodies)
-        });
-        let one = Mutex::new(Asked::new(detector?.map_err(raised)?, device.get().device.is_gpu()));
-        if let Ok(scene) = scene.cast::<Scene>() {
-            scene.try_borrow_mut()?.taken = true;
-        }
-        Ok(Detector { one, device, interrupt })
+        Detector::opened(py, scene, device)
     }
 
     /// Move bodies for the next queries.
@@ -222,10 +205,7 @@ impl Detector {
     /// and where more than two surfaces meet.
     /// Raises InvalidArgumentError for other answers.
     fn curves(&self, py: Python<'_>, answer: PyRef<'_, TrianglePairs>) -> PyResult<Curves> {
-        let found = self.work_of(py, answer.as_super(), |detector, found| {
-            crossing_curves(detector.geometry(found)?.pairs(), detector.scene().bodies())
-        });
-        found.map(Curves::from)
+        self.work_of(py, answer.as_super(), Curves::of)
     }
 
     /// Return all figures of an answer as a dictionary, as the program prints them with --json.

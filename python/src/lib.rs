@@ -18,6 +18,7 @@ mod host;
 mod key;
 mod matrix;
 mod on_device;
+mod opened;
 mod pairs;
 mod pose;
 mod pose_step;

@@ -2,7 +2,8 @@
 
 use crate::columns::Columns;
 use crate::host::rows;
-use nearmiss::contacts::{Curves as Found, PairGeometry as Pair, Part};
+use nearmiss::Error;
+use nearmiss::contacts::{Curves as Found, PairGeometry as Pair, Part, crossing_curves};
 use nearmiss::words::counted;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
@@ -91,9 +92,14 @@ pub struct Curves {
     columns: Columns,
 }
 
-impl From<Found> for Curves {
-    fn from(found: Found) -> Curves {
-        Curves { found, columns: Columns::default() }
+impl Curves {
+    /// Returns the curves of an answer's rows.
+    ///
+    /// # Errors
+    /// As of `Detector::geometry`, and of `crossing_curves`.
+    pub fn of(detector: &mut nearmiss::Detector, found: &nearmiss::Contacts) -> Result<Curves, Error> {
+        let curves = crossing_curves(detector.geometry(found)?.pairs(), detector.scene().bodies());
+        curves.map(|found| Curves { found, columns: Columns::default() })
     }
 }
 

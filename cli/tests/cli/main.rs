@@ -371,7 +371,6 @@ fn the_program_says_what_it_is() {
     };
     let product = ["detect", "explain", "picture", "selftest", "completions", "man", "lab", "help"];
     assert_eq!(commands(&ok(&["--help"])), product);
-    // The laboratory has one door.
     let lab = ["trade", "tables", "bench", "plan", "scene", "turns", "help"];
     assert_eq!(commands(&ok(&["lab", "--help"])), lab);
     for command in &lab[..6] {

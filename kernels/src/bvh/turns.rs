@@ -37,8 +37,9 @@ pub fn swell<R: Real, L: Lane>(lane: &L, frames: &Positions<R>, corners: [u32; 3
 /// A point is a mean of corners, and so are its path and its chord: it leaves the chord by at most
 /// as much as the corner that does so farthest. A triangle that does not turn has a swell too, for
 /// the rounding of its place as others see it: see [`SWELL`]. Volumes of fixed bodies are fitted
-/// once and have none, so those that turn have theirs.
-#[inline(always)]
+/// once and have none, so those that turn have theirs. Out of line: kernels of scenes without turns
+/// keep their registers.
+#[inline(never)]
 pub fn swell_of(record: &TurnRecord, corners: [[Vec3<f64>; 2]; 3]) -> f32 {
     let most = |v: Vec3<f64>| Real::abs(v[0]).greater(Real::abs(v[1])).greater(Real::abs(v[2]));
     let (turn, path) = (Vec3(record.turn), record.path.map(Vec3));

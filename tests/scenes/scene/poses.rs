@@ -184,7 +184,7 @@ fn a_bad_row_is_named_and_moves_nothing() {
     assert_eq!(own.query(&Query::discrete()).expect("an answer").hash(), before);
 }
 
-/// A body begins in a pose, by whatever says it.
+/// A body begins in a pose, in each of its forms.
 #[test]
 fn a_body_begins_where_it_is_put() {
     let mut rng = SmallRng::seed_from_u64(8);

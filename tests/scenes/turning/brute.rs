@@ -92,7 +92,7 @@ impl Judged {
     }
 }
 
-/// What names a row: kind, bodies, vertices, and whether it is certain.
+/// The name of a row: kind, bodies, vertices, and whether it is certain.
 type Name = (Kind, [usize; 2], Vec<u32>, bool);
 
 /// The rows of two bodies of which one turns, by each pair of features alone.

@@ -83,7 +83,7 @@ fn the_long_way_round_is_not_the_short_one() {
     assert_eq!(contacts(&short.ask(Query::continuous())).len(), 0);
 }
 
-/// A whole turn ends where it began: nothing but the path tells that the body moves.
+/// A whole turn ends where it began: only its path shows that the body moves.
 #[test]
 fn a_whole_turn_ends_where_it_began() {
     let step = PoseStep::turning(Pose::default(), [0.0, 0.0, PoseStep::LONGEST_TURN], [0.0; 3]);

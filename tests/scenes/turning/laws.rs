@@ -43,7 +43,7 @@ fn the_earliest_is_the_least_of_all() {
     }
 }
 
-/// Rows of two bodies, to the bit, whoever else is there and in whichever order they were added.
+/// Rows of two bodies, to the bit, with and without the others.
 #[test]
 fn of_two_bodies_whatever_others_do() {
     let whole = crowd(3, [0.0; 3], 1.2);

@@ -1,7 +1,7 @@
 //! # Turning: pairs of triangles of bodies that turn → proven contacts
 //! Paper    not in the paper. The motion is that of FCL's and parry's interpolations; the proof is
 //!          [`crate::prim::turning`].
-//! Launch   [`features()`] over the pairs, which leaves out triangles in balls that stay apart; then [`solve`] over its lists: a lane a pair, both kinds
+//! Launch   [`features()`] over the pairs, which leaves out triangles and features in balls that stay apart; then [`solve`] over its lists: a lane a pair, both kinds
 //!          in one launch; a grid of any size strides. Only in a step in which a body may turn.
 //! Reads    pairs, their features, bodies that turn, points at rest and vertices; tolerances of
 //!          bodies, if they differ.
@@ -18,11 +18,11 @@ use super::{of_edge_edge, of_vertex_face, stride};
 use crate::abi::{Hit, Point, Positions, Span, TurnRecord, TurningArgs, TurningFeaturesArgs};
 use crate::bvh::turns::body_of;
 use crate::exec::{Block, Lane};
-use crate::math::{Vec3, rigid};
+use crate::math::{Vec3, pick, rigid};
 use crate::prim::balls::stay_apart;
 use crate::prim::turning::{Side, edge_edge, vertex_face};
 
-/// The tests that the triangles of each pair own, unless they stay apart.
+/// The tests that the triangles of each pair own, unless the triangles or the features stay apart.
 pub fn features<B: Block>(block: &mut B, args: &TurningFeaturesArgs) {
     let count = args.pairs.listed(block);
     stride(block, count, |block, base| {
@@ -36,20 +36,44 @@ pub fn features<B: Block>(block: &mut B, args: &TurningFeaturesArgs) {
                 if mask != 0 {
                     let [a, b] = sides(lane, (&args.frames, args.rest), [&p.corners, &q.corners]);
                     mask = if stay_apart(&a, &b, args.gap) { 0 } else { mask };
-                }
-                while mask != 0 {
-                    let test = mask.trailing_zeros();
-                    if VERTICES >> test & 1 == 1 {
-                        args.vf.push(lane, vertex_and_face(facet, pair, test));
-                    } else {
-                        args.ee.push(lane, two_edges(facet, pair, test - 6));
+                    while mask != 0 {
+                        let test = mask.trailing_zeros();
+                        mask &= mask - 1;
+                        let (of_a, of_b) = parts(&a, &b, test);
+                        if stay_apart(&of_a, &of_b, args.gap) {
+                            continue;
+                        }
+                        if VERTICES >> test & 1 == 1 {
+                            args.vf.push(lane, vertex_and_face(facet, pair, test));
+                        } else {
+                            args.ee.push(lane, two_edges(facet, pair, test - 6));
+                        }
                     }
-                    mask &= mask - 1;
                 }
             }
             lane.meet();
         });
     });
+}
+
+/// The features of a test, see [`owned`], each as three points: a vertex thrice, or the ends of an
+/// edge and the middle between them.
+#[inline(always)]
+fn parts(a: &Side, b: &Side, test: u32) -> (Side, Side) {
+    let vertex = |side: &Side, k: u32| Side { points: [pick(side.points, k); 3], ..*side };
+    let edge = |side: &Side, k: u32| {
+        let [x, y, z] = side.points;
+        let ends = [pick([x, y, z], k), pick([y, z, x], k)];
+        let middle = [0, 1].map(|end| (ends[0][end] + ends[1][end]) * 0.5);
+        Side { points: [ends[0], ends[1], middle], ..*side }
+    };
+    if test < 3 {
+        (vertex(a, test), *b)
+    } else if test < 6 {
+        (*a, vertex(b, test - 3))
+    } else {
+        (edge(a, (test - 6) / 3), edge(b, (test - 6) % 3))
+    }
 }
 
 /// The contacts of both kinds.
