@@ -201,8 +201,8 @@ impl Detector {
     /// - `answer`: TrianglePairs of this detector. Bodies must not have moved since.
     ///
     /// Segments are joined by the vertex, edge or face of each body that holds their ends, never by
-    /// coordinates. A curve ends at a border, at a seam of equal vertices, where an edge lies on a face,
-    /// and where more than two surfaces meet.
+    /// coordinates. A curve ends at a border, at a seam of equal vertices, and along an edge on a face. It
+    /// also ends in a point of three surfaces.
     /// Raises InvalidArgumentError for other answers.
     fn curves(&self, py: Python<'_>, answer: PyRef<'_, TrianglePairs>) -> PyResult<Curves> {
         self.work_of(py, answer.as_super(), Curves::of)

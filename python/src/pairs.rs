@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 
 type Column<'py> = PyResult<Bound<'py, PyAny>>;
 
-/// How triangle pairs meet, and where: a row a pair, in the order of the answer.
+/// Kinds and segments of triangle pairs: a row a pair, in the order of the answer.
 ///
 /// Columns are read-only numpy arrays.
 #[pyclass(module = "nearmiss", frozen)]

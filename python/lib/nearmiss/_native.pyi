@@ -650,7 +650,7 @@ class Geometry:
         """(k, 3) float64: unit vectors from feature b to feature a; zeros if no direction is defined."""
 
 class PairGeometry:
-    """How triangle pairs meet, and where: a row a pair, in the order of the answer.
+    """Kinds and segments of triangle pairs: a row a pair, in the order of the answer.
 
     Columns are read-only numpy arrays.
     """
@@ -914,7 +914,15 @@ class Detector:
         """Return the nearest two bodies at t = 0, and their distance: the answer to Distance."""
 
     @overload
-    def geometry(self, answer: Contacts | NearPairs) -> Geometry: ...
+    def geometry(self, answer: Contacts | NearPairs) -> Geometry:
+        """Return where the features or triangles of an answer's rows meet.
+
+        - `answer`: an answer of this detector. Bodies must not have moved since.
+
+        Returns Geometry for Contacts and NearPairs: vertices, weights, points and normals. Returns
+        PairGeometry for TrianglePairs: how they meet, and the segment in which they do.
+        Raises InvalidArgumentError for other answers, and for those of the solver "moller".
+        """
     @overload
     def geometry(self, answer: TrianglePairs) -> PairGeometry:
         """Return where the features or triangles of an answer's rows meet.
@@ -932,8 +940,8 @@ class Detector:
         - `answer`: TrianglePairs of this detector. Bodies must not have moved since.
 
         Segments are joined by the vertex, edge or face of each body that holds their ends, never by
-        coordinates. A curve ends at a border, at a seam of equal vertices, where an edge lies on a face,
-        and where more than two surfaces meet.
+        coordinates. A curve ends at a border, at a seam of equal vertices, and along an edge on a face. It
+        also ends in a point of three surfaces.
         Raises InvalidArgumentError for other answers.
         """
 

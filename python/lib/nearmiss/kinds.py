@@ -13,7 +13,7 @@ class Kind(IntEnum):
 
 
 class PairKind(IntEnum):
-    """How two triangles meet: the numbers in `PairGeometry.kind`."""
+    """Way in which two triangles meet: the numbers in `PairGeometry.kind`."""
 
     CROSSING = 0
     """Their insides share a point, and no plane holds both."""
