@@ -293,10 +293,11 @@ fn copying(ptx: &str) -> Vec<&str> {
 }
 
 /// Except for slices, where it is 1 us: inlined, the assembler gathers their atomics by a
-/// collective. The judge of machine code (.ci/lanes.py) cannot see that its lanes are together.
+/// collective. The judge of machine code (.ci/lanes.py) cannot see that its lanes are together. And
+/// except for pairs that turn, whose solver is out of line and takes a thousand times as long.
 #[test]
 fn kernels_do_not_copy_their_arguments() {
-    let known = ["narrow_slice_f32", "narrow_slice_f64"];
+    let known = ["narrow_slice_f32", "narrow_slice_f64", "narrow_turning"];
     assert_eq!(copying(&committed()), known);
 }
 

@@ -17,8 +17,9 @@ pub const STAGES: [(&str, &str); 9] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 67] = [
+const KERNELS: [(&str, &str); 71] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
+    ("place_turns", "rotation vectors and paths of bodies that turn"),
     ("place", "poses applied, uploads put in place, other bodies at rest"),
     ("construct_bounds", "the box of each body's centres"),
     ("construct_runs", "runs of 16 tiles in halves of halves, on chip"),
@@ -74,6 +75,9 @@ const KERNELS: [(&str, &str); 67] = [
     ("narrow_settle", "exact touching at the start"),
     ("narrow_slice", "the step in slices, and the search by boxes"),
     ("narrow_separate", "supporting planes"),
+    ("narrow_divide", "candidates of bodies that turn, and the others"),
+    ("narrow_turning_features", "features of those that do not stay apart, by balls on their arcs"),
+    ("narrow_turning", "contacts on arcs, slice by slice"),
     ("narrow_least", "the least distance of triangles"),
     ("narrow_witness", "the first pair with the least distance"),
     ("narrow_nearest", "nearest points of that pair"),

@@ -53,6 +53,8 @@ pub struct NarrowContext<'a, R: Precision> {
     pub features: &'a Features,
     /// Meshes and bodies, if candidates are those of instances.
     pub placeable: Option<Placeable>,
+    /// Whether memory may be taken; not while launches are listed.
+    pub may_grow: bool,
     /// Whether candidates are those of a sample, which gives a bound.
     pub is_sample: bool,
 }

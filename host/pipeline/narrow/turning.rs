@@ -65,7 +65,9 @@ impl Turning {
         let Some(certified) = certified.filter(|_| !given.frames.turns.is_empty()) else {
             return Ok(given.pairs);
         };
-        self.reserve(given)?;
+        if given.may_grow {
+            self.reserve(given)?;
+        }
         let (straight, turning) = (self.straight.output(given.counters), self.turning.output(given.counters));
         let args = DivideArgs {
             turns: given.frames.turns,

@@ -227,6 +227,7 @@ impl<R: Precision> QueryMemory<R> {
                         counters: self.counters.counters(),
                         features: &scene.features,
                         placeable: scene.broads[self.broad].phase.placeable(),
+                        may_grow: !self.settled,
                         is_sample: matches!(step, Step::Narrow(_, true)),
                     };
                     if let Step::Narrow(at, _) = step {

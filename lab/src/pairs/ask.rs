@@ -123,6 +123,7 @@ impl<R: Precision> Run<'_, R> {
             device: self.device,
             frames: Positions { still: Span::EMPTY, moving: self.vertices.span(), turns: Span::EMPTY },
             rest: Span::EMPTY,
+            may_grow: true,
             faces: self.faces.span(),
             pairs: Output::EMPTY,
             bodies: Span::EMPTY,

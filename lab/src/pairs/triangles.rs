@@ -104,6 +104,7 @@ fn some<R: Precision>(
             device,
             frames: abi::Positions { still: points.span(), moving: Span::EMPTY, turns: Span::EMPTY },
             rest: Span::EMPTY,
+            may_grow: true,
             faces: faces.span(),
             pairs: list.output(counters.counters()),
             bodies: Span::EMPTY,

@@ -105,34 +105,3 @@ fn nobody_else_pays() {
     };
     assert_eq!(launches(true), launches(false));
 }
-
-/// TEMPORARY
-#[test]
-fn steal_is_whole() {
-    use nearmiss::research::{BroadPhase, QueryExt, Search, StealShape, Traversal};
-    let body = Body::deformable(touching(1, 60, true, true));
-    let scene = Scene::from(body.with_filter(CollisionFilter::with_self_collision()));
-    for adjacent in [false, true] {
-        let query = Query::from(Discrete::default().with_adjacent(adjacent));
-        for lanes in [1, 2, 7, 32] {
-            for cores in [1, 9] {
-                let mut counts = std::collections::BTreeMap::<(u64, usize), u32>::new();
-                for _ in 0..60 {
-                    let steal = query.with_search(Search {
-                        broad_phase: Some(BroadPhase::Tree),
-                        traversal: Some(Traversal::Steal(StealShape { cores: Some(cores), ..StealShape::native() })),
-                        ..Search::default()
-                    });
-                    let device = nearmiss::Device::emulator(
-                        nearmiss_emulator::Emulator::new(nearmiss_emulator::Mode::Engine, None).expect("threads").with_lanes(lanes),
-                    );
-                    let mut detector = Detector::new(device, scene.clone()).expect("a detector");
-                    let found = detector.query(&steal).expect("an answer");
-                    *counts.entry((found.stats.candidates, found.len())).or_default() += 1;
-                }
-                println!("adjacent {adjacent}, lanes {lanes}, cores {cores}: (candidates, rows): {counts:?}");
-            }
-        }
-    }
-    panic!("shown");
-}
