@@ -174,7 +174,9 @@ impl<V: Kernels> Forest<V> {
         let filters: Vec<NodeFilter> =
             (0..2 * count).map(|node| filters[grafted(node, own) as usize]).collect();
         check_filters(&links, &filters, ROOT)?;
-        self.volumes.check_nodes((&links, &nodes, &leaf_nodes), (ROOT, fixed.margin), faces, frames)
+        // Fixed volumes were fitted once, without turns.
+        let swell = |_| 0.0;
+        self.volumes.check_nodes((&links, &nodes, &leaf_nodes), (ROOT, fixed.margin, &swell), faces, frames)
     }
 
     /// Returns the nodes of the fixed tree as they were before they were grafted, and the parents

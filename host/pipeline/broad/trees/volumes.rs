@@ -172,7 +172,13 @@ impl<V: Kernels> Volumes<V> {
     ) -> Result<(), Error> {
         let leaves = tree.leaf_nodes.read(tree.leaves())?;
         let nodes = &self.download()?[..tree.root() as usize - 1 + 2 * tree.leaves()];
-        self.check_nodes((&tree.download()?, nodes, &leaves), (tree.root(), self.margin), faces, frames)
+        let swell = |face| frames.swell(face);
+        self.check_nodes(
+            (&tree.download()?, nodes, &leaves),
+            (tree.root(), self.margin, &swell),
+            faces,
+            frames,
+        )
     }
 
     /// Checks nodes against the links and the leaves' nodes of their tree. `nodes` ends with the
@@ -183,11 +189,11 @@ impl<V: Kernels> Volumes<V> {
     pub fn check_nodes<R: Precision>(
         &self,
         (links, nodes, leaves): (&[Link], &[Node<V>], &[u32]),
-        (root, margin): (u32, f32),
+        (root, margin, swell): (u32, f32, &dyn Fn([u32; 3]) -> f32),
         faces: &[[u32; 3]],
         frames: &Checked<R>,
     ) -> Result<(), Error> {
-        let swell = |triangle: u32| frames.swell(faces[triangle as usize]);
+        let swell = |triangle: u32| swell(faces[triangle as usize]);
         let leaf = |triangle: u32| frames.leaf::<V>(faces[triangle as usize], margin + swell(triangle));
         let fitted = |first: u32, last: u32| {
             if last - first >= V::GROUP {
