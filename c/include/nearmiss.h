@@ -51,7 +51,7 @@
 
 // The version of this header. It changes whenever a struct or a function changes. Compare it with
 // `nearmiss_abi()` before any other call: a library of another version has other structs.
-#define NEARMISS_ABI 5
+#define NEARMISS_ABI 6
 
 // Bytes of an error's text.
 #define NEARMISS_TEXT 1016

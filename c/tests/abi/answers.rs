@@ -3,7 +3,7 @@
 use super::*;
 use nearmiss::contacts::{Kind, Part};
 use nearmiss::device::Backend;
-use nearmiss::scene::{BodyId, CollisionFilter, Motion, Pose, Scene};
+use nearmiss::scene::{BodyId, CollisionFilter, Motion, Pose, PoseStep, Scene};
 use nearmiss::{Contacts, Detector, Device, Mesh, Query};
 use nearmiss_lab::scene::soup;
 
@@ -178,8 +178,8 @@ fn places(of: &Body, other: &Body, poses: [Pose; 2], time: f64) -> [Vec<[f64; 3]
     };
     let [start, end] = of.ends().map(Positions::to_f64);
     let mesh = other.positions_t0().to_f64();
-    let [from, to] = poses.map(|pose| mesh.iter().map(|point| pose.apply(*point)).collect::<Vec<[f64; 3]>>());
-    [between(&start, &end), between(&from, &to)]
+    let there = PoseStep::from(poses).at(time).expect("it turns");
+    [between(&start, &end), mesh.iter().map(|point| there.apply(*point)).collect()]
 }
 
 /// A contradiction between a row, its geometry and the meshes.

@@ -250,9 +250,9 @@ fn a_bad_motion_is_refused() {
     );
     bad(&[at, at], NEARMISS_INVALID_ARGUMENT, "body 0");
     bad(
-        &[NearmissMotion { kind: 4, ..at }],
+        &[NearmissMotion { kind: 5, ..at }],
         NEARMISS_INVALID_ARGUMENT,
-        "kind of the motion of body 0 is unknown, got 4",
+        "kind of the motion of body 0 is unknown, got 5",
     );
     bad(&[NearmissMotion { on_device: 7, ..at }], NEARMISS_INVALID_ARGUMENT, "on_device is no flag, got 7");
     let both = NearmissMotion { positions: [at.positions[0]; 2], ..at };

@@ -324,7 +324,7 @@ fn a_turn_and_tolerances_of_bodies_are_told() {
         let (sin, cos) = (angle.to_radians() / 2.0).sin_cos();
         let text = format!(
             "[[body]]\nmesh = \"bar.obj\"\nkind = \"rigid\"\nself_collision = true\n\
-             poses = [{{}}, {{ rotation = [0, 0, {sin}, {cos}] }}]\n[[body]]\nmesh = \"ground.obj\"\nkind = \"{kind}\"\n"
+             poses = [{{}}, {{ rotation = [0, 0, {sin}, {cos}] }}]\npath = \"straight\"\n[[body]]\nmesh = \"ground.obj\"\nkind = \"{kind}\"\n"
         );
         folder.write("scene.toml", &text)
     };
