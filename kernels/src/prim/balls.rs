@@ -128,7 +128,7 @@ mod tests {
                 let turn = way as f64 * 0.39;
                 let at = [2.5 * turn.cos(), 2.5 * turn.sin(), 0.1 * (way % 5) as f64];
                 let b = side([0.0; 3], at, 0.1);
-                match (meet(&a, &b, 0.3), stay_apart(&a, &b, 0.3)) {
+                match (meet(&a, &b, 0.6), stay_apart(&a, &b, 0.6)) {
                     (true, true) => panic!("{angle} {at:?}: balls that meet are apart"),
                     (true, false) => met += 1,
                     (false, true) => parted += 1,
