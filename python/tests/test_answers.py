@@ -337,7 +337,9 @@ def test_a_frame_in_motion_has_two_ends_and_a_far_turn_a_caveat():
             assert len(detector.discrete()) == 1
         assert detector.step({0: (nm.Pose(), nm.Pose()), 2: bar}, query).caveats == []
         half = np.radians(90) / 2
-        found = detector.step({0: (nm.Pose(), nm.Pose((0, 0, np.sin(half), np.cos(half))))}, query)
+        turned = nm.Pose((0, 0, np.sin(half), np.cos(half)))
+        assert detector.step({0: (nm.Pose(), turned)}, query).caveats == []
+        found = detector.step({0: nm.PoseStep(nm.Pose(), turned, straight=True)}, query)
         assert len(found.caveats) == 1 and "body 0 turns by 90.0 degrees" in found.caveats[0]
         assert not any("turns" in caveat for caveat in detector.step({}, query).caveats)
         assert detector.tolerance == detector.largest_tolerance > 0
