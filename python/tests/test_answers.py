@@ -338,7 +338,7 @@ def test_a_frame_in_motion_has_two_ends_and_a_far_turn_a_caveat():
         assert detector.step({0: (nm.Pose(), nm.Pose()), 2: bar}, query).caveats == []
         half = np.radians(90) / 2
         turned = nm.Pose((0, 0, np.sin(half), np.cos(half)))
-        assert detector.step({0: (nm.Pose(), turned)}, query).caveats == []
+        assert not any("turns" in caveat for caveat in detector.step({0: (nm.Pose(), turned)}, query).caveats)
         found = detector.step({0: nm.PoseStep(nm.Pose(), turned, straight=True)}, query)
         assert len(found.caveats) == 1 and "body 0 turns by 90.0 degrees" in found.caveats[0]
         assert not any("turns" in caveat for caveat in detector.step({}, query).caveats)
