@@ -3,8 +3,8 @@
 //! Conservative advancement (Mirtich 1996): two balls that are `d` apart cannot meet within `d` over
 //! a bound of their speed. No ball is flattened on its way, however far it turns.
 
-use super::turning::Side;
-use crate::math::root::sqrt64;
+use super::turning::motion::mix;
+use super::turning::{Side, length};
 use crate::math::tolerance::swell::{BALL, SWELL};
 use crate::math::turn::Turn;
 use crate::math::{Real, Vec3};
@@ -17,16 +17,6 @@ struct Ball {
     /// From the pivot, before it turns.
     centre: [Vec3<f64>; 2],
     radius: f64,
-}
-
-#[inline(always)]
-fn length(v: Vec3<f64>) -> f64 {
-    sqrt64(v.dot(v))
-}
-
-#[inline(always)]
-fn between(ends: &[Vec3<f64>; 2], t: f64) -> Vec3<f64> {
-    ends[0] * (1.0 - t) + ends[1] * t
 }
 
 impl Ball {
@@ -59,7 +49,7 @@ impl Ball {
 
     #[inline(always)]
     fn at(&self, t: f64) -> Vec3<f64> {
-        self.turn.rotated(t, between(&self.centre, t))
+        self.turn.rotated(t, mix(&self.centre, t))
     }
 }
 
@@ -79,7 +69,7 @@ pub fn stay_apart(a: &Side, b: &Side, gap: f64) -> bool {
     let speed = (length(apart[1] - apart[0]) + a.speed() + b.speed()) * (1.0 + BALL);
     let mut t = 0.0;
     for _ in 0..STEPS {
-        let gap = length(between(&apart, t) + a.at(t) - b.at(t)) - reach;
+        let gap = length(mix(&apart, t) + a.at(t) - b.at(t)) - reach;
         // Of NaN nothing is known.
         if gap.is_nan() || gap <= 0.0 {
             return false;
@@ -141,7 +131,7 @@ mod tests {
 
     /// A gap that is just closed, and one that is just not, by the bounds' own roundings.
     #[test]
-    fn the_reach_is_exact_but_for_its_roundings() {
+    fn the_reach_is_exact_up_to_its_roundings() {
         let a = side([0.0, 0.0, 3.0], [3.0, 0.0, 0.0], 0.0);
         let b = side([0.0; 3], [0.0, 4.0, 0.0], 0.0);
         // They come within 1, at a quarter turn.

@@ -39,7 +39,7 @@ pub const TURN_FAINT: f64 = f64::from_bits(2 << 52);
 ///
 /// Together `214u` at most. Relative.
 pub const TURNING_PLACE: f64 = 256.0 * U64;
-/// How far a control vector may be from a curve through its computed places, but for the curve's
+/// How far a control vector may be from a curve through its computed places, without the curve's
 /// own deviation: [`TURNING_PLACE`] times this. A parabola through three places has 1.25 of their
 /// errors, of which `134u` are those of computing, and `15u` of the middle's time. The given
 /// numbers add `80u`, and products with a direction `48u`. In all `315u`. Ratio.

@@ -59,7 +59,7 @@ pub mod window;
 pub use certificate::Contact;
 pub use motion::Motion;
 pub use place::Place;
-use solve::length;
+pub use solve::length;
 
 use super::inclusion::{Params, Verdict};
 use crate::math::Vec3;

@@ -36,8 +36,9 @@ pub struct Motion<const N: usize> {
     pub finite: bool,
 }
 
+/// The place at time `t` of a point that moves linearly between two.
 #[inline(always)]
-fn mix(x: &[Vec3<f64>; 2], t: f64) -> Vec3<f64> {
+pub fn mix(x: &[Vec3<f64>; 2], t: f64) -> Vec3<f64> {
     x[0] * (1.0 - t) + x[1] * t
 }
 

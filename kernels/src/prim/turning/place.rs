@@ -68,7 +68,7 @@ fn of_edges<const N: usize>(w: &[Vec3<f64>; N]) -> Vec3<f64> {
 }
 
 /// The direction across the border of the hull that has the corner nearest along `d` and is across
-/// `d` but for the rounding of that; of several the one along which `d` differs most. Else `d`.
+/// `d`, up to the rounding of that; of several the one along which `d` differs most. Else `d`.
 ///
 /// The point next to the origin errs by roundings of the hull's size. If it is very near, its
 /// direction is too far from across its border: one end of that seems to be behind the origin.

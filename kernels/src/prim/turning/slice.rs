@@ -116,7 +116,7 @@ impl<const N: usize> Motion<N> {
     /// positive (`side` is 1) or negative (-1).
     ///
     /// The normal of the curves is a cubic; its product with one control vector is of degree 5. The
-    /// others have the same product but for the rounding of the normal, `8u` of the lengths of both
+    /// others have the same product, up to the rounding of the normal, `8u` of the lengths of both
     /// edges times a sum of them.
     #[inline]
     pub fn is_apart_by_plane(&self, c: &Curves<N>, side: f64, separation: f64) -> bool {

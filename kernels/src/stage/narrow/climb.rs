@@ -346,7 +346,7 @@ pub(super) fn emit<R: Real, L: Lane>(
 /// Whether to list a verdict. Counts the undecided, or lowers the earliest time if only that is
 /// wanted. Then the pairs with a verdict depend on the order, so none is counted.
 #[inline(always)]
-pub(super) fn keep<R: Real, L: Lane>(lane: &L, args: &RungArgs<R>, verdict: Verdict) -> bool {
+fn keep<R: Real, L: Lane>(lane: &L, args: &RungArgs<R>, verdict: Verdict) -> bool {
     if verdict.is_separated() {
         return false;
     }

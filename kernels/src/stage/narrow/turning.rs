@@ -1,8 +1,9 @@
 //! # Turning: pairs of triangles of bodies that turn → proven contacts
 //! Paper    not in the paper. The motion is that of FCL's and parry's interpolations; the proof is
 //!          [`crate::prim::turning`].
-//! Launch   [`features()`] over the pairs, which leaves out triangles and features in balls that stay apart; then [`solve`] over its lists: a lane a pair, both kinds
-//!          in one launch; a grid of any size strides. Only in a step in which a body may turn.
+//! Launch   [`features()`] over the pairs, which leaves out triangles and features in balls that
+//!          stay apart; then [`solve`] over its lists, both kinds in one launch. A lane a pair; a
+//!          grid of any size strides. Only in a step in which a body may turn.
 //! Reads    pairs, their features, bodies that turn, points at rest and vertices; tolerances of
 //!          bodies, if they differ.
 //! Writes   contacts and undecided pairs with bounds of toi; or the earliest.
@@ -12,10 +13,10 @@
 //! Cost     8 B pair, 160 B each of two bodies and 24 B a vertex (gathered). About 15 slices a pair,
 //!          each 40 ns on a CPU.
 
-use super::climb::keep;
+use super::climb::emit;
 use super::features::{VERTICES, owned, two_edges, vertex_and_face};
 use super::{of_edge_edge, of_vertex_face, stride};
-use crate::abi::{Hit, Point, Positions, Span, TurnRecord, TurningArgs, TurningFeaturesArgs};
+use crate::abi::{Output, Pair, Point, Positions, Span, TurnRecord, TurningArgs, TurningFeaturesArgs};
 use crate::bvh::turns::body_of;
 use crate::exec::{Block, Lane};
 use crate::math::{Vec3, pick, rigid};
@@ -24,32 +25,42 @@ use crate::prim::turning::{Side, edge_edge, vertex_face};
 
 /// The tests that the triangles of each pair own, unless the triangles or the features stay apart.
 pub fn features<B: Block>(block: &mut B, args: &TurningFeaturesArgs) {
-    let count = args.pairs.listed(block);
+    each(block, args.pairs, |lane, pair| {
+        let facet = |triangle| lane.read(args.facets, triangle);
+        let (p, q) = (facet(pair.a), facet(pair.b));
+        let mut mask = owned(&p, &q);
+        if mask == 0 {
+            return;
+        }
+        let [a, b] = sides(lane, (&args.frames, args.rest), [&p.corners, &q.corners]);
+        if stay_apart(&a, &b, args.gap) {
+            return;
+        }
+        while mask != 0 {
+            let test = mask.trailing_zeros();
+            mask &= mask - 1;
+            let (of_a, of_b) = parts(&a, &b, test);
+            if stay_apart(&of_a, &of_b, args.gap) {
+                continue;
+            }
+            if VERTICES >> test & 1 == 1 {
+                args.vf.push(lane, vertex_and_face(facet, pair, test));
+            } else {
+                args.ee.push(lane, two_edges(facet, pair, test - 6));
+            }
+        }
+    });
+}
+
+/// Runs `body` for each pair of a list, a lane each, in a grid of any size.
+#[inline(always)]
+fn each<B: Block>(block: &mut B, pairs: Output<Pair>, mut body: impl FnMut(&B::Lane, Pair)) {
+    let count = pairs.listed(block);
     stride(block, count, |block, base| {
         block.phase(|lane| {
             let i = base + lane.lane();
             if i < count {
-                let pair = args.pairs.get(lane, i);
-                let facet = |triangle| lane.read(args.facets, triangle);
-                let (p, q) = (facet(pair.a), facet(pair.b));
-                let mut mask = owned(&p, &q);
-                if mask != 0 {
-                    let [a, b] = sides(lane, (&args.frames, args.rest), [&p.corners, &q.corners]);
-                    mask = if stay_apart(&a, &b, args.gap) { 0 } else { mask };
-                    while mask != 0 {
-                        let test = mask.trailing_zeros();
-                        mask &= mask - 1;
-                        let (of_a, of_b) = parts(&a, &b, test);
-                        if stay_apart(&of_a, &of_b, args.gap) {
-                            continue;
-                        }
-                        if VERTICES >> test & 1 == 1 {
-                            args.vf.push(lane, vertex_and_face(facet, pair, test));
-                        } else {
-                            args.ee.push(lane, two_edges(facet, pair, test - 6));
-                        }
-                    }
-                }
+                body(lane, pairs.get(lane, i));
             }
             lane.meet();
         });
@@ -79,37 +90,18 @@ fn parts(a: &Side, b: &Side, test: u32) -> (Side, Side) {
 /// The contacts of both kinds.
 pub fn solve<B: Block>(block: &mut B, args: &TurningArgs) {
     let rung = &args.rung;
-    let count = rung.vf.pairs.listed(block);
-    stride(block, count, |block, base| {
-        block.phase(|lane| {
-            let i = base + lane.lane();
-            if i < count {
-                let pair = rung.vf.pairs.get(lane, i);
-                let face = lane.read(rung.faces, pair.b);
-                let [v, f] = sides(lane, (&rung.frames, args.rest), [&[pair.a], &face]);
-                let verdict = vertex_face(&v, &f, &of_vertex_face(lane, rung, pair));
-                if keep(lane, rung, verdict) {
-                    rung.vf.hits.push(lane, Hit { a: pair.a, b: pair.b, verdict });
-                }
-            }
-            lane.meet();
-        });
+    let places = (&rung.frames, args.rest);
+    each(block, rung.vf.pairs, |lane, pair| {
+        let face = lane.read(rung.faces, pair.b);
+        let [v, f] = sides(lane, places, [&[pair.a], &face]);
+        let verdict = vertex_face(&v, &f, &of_vertex_face(lane, rung, pair));
+        emit(lane, rung, &rung.vf, pair, verdict);
     });
-    let count = rung.ee.pairs.listed(block);
-    stride(block, count, |block, base| {
-        block.phase(|lane| {
-            let i = base + lane.lane();
-            if i < count {
-                let pair = rung.ee.pairs.get(lane, i);
-                let ends = [pair.a, pair.b].map(|edge| lane.read(rung.edges, edge));
-                let [a, b] = sides(lane, (&rung.frames, args.rest), [&ends[0], &ends[1]]);
-                let verdict = edge_edge(&a, &b, &of_edge_edge(lane, rung, pair));
-                if keep(lane, rung, verdict) {
-                    rung.ee.hits.push(lane, Hit { a: pair.a, b: pair.b, verdict });
-                }
-            }
-            lane.meet();
-        });
+    each(block, rung.ee.pairs, |lane, pair| {
+        let ends = [pair.a, pair.b].map(|edge| lane.read(rung.edges, edge));
+        let [a, b] = sides(lane, places, [&ends[0], &ends[1]]);
+        let verdict = edge_edge(&a, &b, &of_edge_edge(lane, rung, pair));
+        emit(lane, rung, &rung.ee, pair, verdict);
     });
 }
 
