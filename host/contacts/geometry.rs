@@ -59,9 +59,14 @@ pub struct Corners {
 impl Corners {
     /// Returns the vertices on straight lines between both ends of the step.
     pub fn straight(ends: &[[[f64; 3]; 2]; 4], time: f64) -> Corners {
-        let at = |t: f64| ends.map(|[t0, t1]| (Vec3(t0) * (1.0 - t) + Vec3(t1) * t).0);
-        Corners { now: at(time), before: at(0.0), after: at(1.0), turns: false }
+        let [now, before, after] = [time, 0.0, 1.0].map(|time| on_lines(ends, time));
+        Corners { now, before, after, turns: false }
     }
+}
+
+/// Returns the places at a time on straight lines between both ends of the step.
+pub fn on_lines(ends: &[[[f64; 3]; 2]; 4], time: f64) -> [[f64; 3]; 4] {
+    ends.map(|[t0, t1]| (Vec3(t0) * (1.0 - time) + Vec3(t1) * time).0)
 }
 
 /// Two features, named as in a contact or a near pair.

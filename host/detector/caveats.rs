@@ -22,22 +22,19 @@ impl Detector {
         }
         let is_certified = query.certified().is_some();
         let goes_straight = |body: &Body| !is_certified || body.is_straight();
-        let is_rigid =
-            |body: &&Body| body.kind() == BodyKind::Rigid && body.face_count() > 0 && goes_straight(body);
-        let is_device_resident = |body: &Body| body.is_device_resident() && body.is_moving();
-        let bodies = self.scene.bodies();
+        let is_posed_there =
+            |body: &Body| body.kind() == BodyKind::Rigid && body.is_device_resident() && body.is_moving();
+        let mut bodies = self.scene.bodies().iter();
         let found = match &self.engine.pipeline {
-            Some(pipeline) if bodies.iter().filter(is_rigid).any(is_device_resident) => pipeline.poses()?,
+            Some(pipeline) if bodies.any(|body| goes_straight(body) && is_posed_there(body)) => {
+                pipeline.poses()?
+            }
             _ => Vec::new(),
         };
         for id in self.scene.ids() {
-            let Some(body) = self.scene.get(id).filter(is_rigid) else { continue };
-            let poses = match found.get(2 * id.index()..2 * id.index() + 2) {
-                Some(&[start, end]) if is_device_resident(body) => [start, end],
-                _ if body.is_device_resident() => continue,
-                _ => body.poses(),
-            };
-            if let Some([degrees, bulge]) = body.turn_beyond(TURN_DEGREES, poses) {
+            let Some(body) = self.scene.get(id).filter(|body| goes_straight(body)) else { continue };
+            let Some(step) = body.step_among(id.index(), &found) else { continue };
+            if let Some([degrees, bulge]) = body.turn_beyond(TURN_DEGREES, [step.start(), step.end()]) {
                 contacts.caveats.push(Caveat::Turned { body: id, degrees, bulge });
             }
         }

@@ -1,7 +1,7 @@
 //! Geometry of contacts and of triangle pairs.
 
 use super::Detector;
-use crate::contacts::geometry::{Corners, Named};
+use crate::contacts::geometry::{Corners, Named, on_lines};
 use crate::contacts::located::sealed::{Computed as _, Inputs};
 use crate::contacts::{Answer, ContactGeometry, Geometry, Kind, Located, PairGeometry, TrianglePair};
 use crate::device::emulator::start_threads;
@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::memory;
 use crate::pipeline::{Layout, Whereabouts};
 use crate::query::Query;
-use crate::scene::{Body, BodyKind, PoseStep};
+use crate::scene::{Body, PoseStep};
 use rayon::prelude::*;
 
 impl Detector {
@@ -135,18 +135,8 @@ impl Detector {
 
 /// Returns the step of each body that turns.
 fn turning(bodies: &[Body], places: &Whereabouts) -> Vec<Option<PoseStep>> {
-    let step = |(at, body): (usize, &Body)| {
-        if body.kind() != BodyKind::Rigid {
-            return None;
-        }
-        let step = match places.poses.get(2 * at..2 * at + 2) {
-            Some(&[start, end]) if body.is_device_resident() => PoseStep::new(start, end),
-            _ if body.is_device_resident() => return None,
-            _ => body.pose_step(),
-        };
-        step.turns().then_some(step)
-    };
-    bodies.iter().enumerate().map(step).collect()
+    let of = |(at, body): (usize, &Body)| body.step_among(at, &places.poses).filter(PoseStep::turns);
+    bodies.iter().enumerate().map(of).collect()
 }
 
 /// Returns the vertices of a row at the times that its geometry needs. `own` are their numbers in
@@ -163,7 +153,7 @@ fn around(
     let first = named.kind.vertices_of_a();
     let at = |time: f64| {
         let poses = steps.map(|step| step.and_then(|step| step.at(time)));
-        let mut corners = Corners::straight(ends, time).now;
+        let mut corners = on_lines(ends, time);
         for (k, corner) in corners.iter_mut().enumerate() {
             let side = usize::from(k >= first);
             if let Some(pose) = poses[side] {

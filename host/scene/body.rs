@@ -137,6 +137,22 @@ impl Body {
         PoseStep::along(self.poses, self.path)
     }
 
+    /// Returns the step of a rigid body. If the body is device-resident, by the poses that the device
+    /// has read, two of each body, of which it is number `own`; `None` if it rests or they are not
+    /// known. `None` for other bodies.
+    pub(crate) fn step_among(&self, own: usize, found: &[Pose]) -> Option<PoseStep> {
+        if self.kind != BodyKind::Rigid || self.faces.is_empty() {
+            return None;
+        }
+        if !self.is_device_resident() {
+            return Some(self.pose_step());
+        }
+        match found.get(2 * own..2 * own + 2) {
+            Some(&[start, end]) if self.is_moving() => Some(PoseStep::new(start, end)),
+            _ => None,
+        }
+    }
+
     /// Whether its vertices go straight between its poses, by choice. A body whose poses only the
     /// device has turns.
     pub(crate) fn is_straight(&self) -> bool {

@@ -5,6 +5,7 @@ use crate::mesh::Problem;
 use nearmiss_kernels::abi::PoseRecord;
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::math::tolerance::POSE_UNIT;
+use nearmiss_kernels::math::turn::between;
 use nearmiss_kernels::stage::place::moved;
 
 /// Rigid motion of a body's points: a rotation, then a translation.
@@ -78,14 +79,13 @@ impl Pose {
     /// in the frame of the body's points, not of length 1. Quaternions of opposite sign are the
     /// same rotation.
     pub(crate) fn turn_to(&self, other: &Pose) -> (f64, Vec3<f64>) {
-        let parts = |pose: &Pose| {
+        // From one to the other in the frame of the points: between the inverse rotations, back.
+        let inverse = |pose: &Pose| {
             let [x, y, z, w] = pose.record().rotation;
-            (Vec3([x, y, z]), w)
+            [-x, -y, -z, w]
         };
-        let ((u, a), (v, b)) = (parts(self), parts(other));
-        // The conjugate of the first, times the second.
-        let axis = v * a - u * b - u.cross(v);
-        (2.0 * axis.dot(axis).sqrt().atan2((a * b + u.dot(v)).abs()), axis)
+        let turn = between(inverse(other), inverse(self));
+        (turn.dot(turn).sqrt(), turn)
     }
 
     fn length(&self) -> f64 {

@@ -21,7 +21,7 @@ use nearmiss_kernels::stage::place::moved;
 /// // Half a turn about the origin of the mesh, or about its corner.
 /// let about_origin = PoseStep::new(Pose::default(), end);
 /// let about_corner = PoseStep::new(Pose::default(), end).about([1.0, 1.0, 0.0]);
-/// // 350 degrees: two poses cannot say it.
+/// // 350 degrees: two poses cannot give it.
 /// let far = PoseStep::turning(Pose::default(), [0.0, 0.0, 350_f64.to_radians()], [0.0; 3]);
 /// # let _ = (Motion::PoseStep(about_origin), about_corner, far);
 /// ```
@@ -130,10 +130,10 @@ impl PoseStep {
     /// ```
     pub fn at(&self, time: f64) -> Option<Pose> {
         let PosePath::Turn { pivot, .. } = self.path else { return None };
-        let (start, end) = (self.start.record(), self.end().record());
-        let turn = self.path.turn([self.start, self.end()]).map_or(Vec3([0.0; 3]), |(_, turn)| turn);
-        let rotation = after(exp(turn * time), start.rotation);
-        let [from, to] = [start, end].map(|pose| moved(&pose, Vec3(pivot)));
+        let ends = [self.start, self.end()];
+        let turn = self.path.turn(ends).map_or(Vec3([0.0; 3]), |(_, turn)| turn);
+        let rotation = after(exp(turn * time), self.start.record().rotation);
+        let [from, to] = ends.map(|pose| moved(&pose.record(), Vec3(pivot)));
         let turned = Pose { rotation, translation: [0.0; 3] };
         let at = from * (1.0 - time) + to * time;
         Some(Pose { rotation, translation: (at - moved(&turned.record(), Vec3(pivot))).0 })
