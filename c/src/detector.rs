@@ -4,7 +4,7 @@ use crate::device::NearmissDevice;
 use crate::error::{NearmissCode, NearmissError, call, free, given, make, refused};
 use crate::scene::NearmissScene;
 use nearmiss::scene::BodyId;
-use nearmiss::{Detector, Device, Error, Query};
+use nearmiss::{Body, Detector, Device, Error, Query};
 use std::ffi::CString;
 use std::mem::MaybeUninit;
 use std::sync::atomic::Ordering;
@@ -50,6 +50,14 @@ impl NearmissDetector {
             detector.broken = false;
             done
         })
+    }
+
+    /// The body of a number, at its place on the device.
+    pub(crate) fn downloaded(&mut self, number: u32) -> Result<&Body, Error> {
+        let id = self.body(number)?;
+        self.detector.download_positions()?;
+        let found = self.detector.scene().get(id);
+        found.ok_or_else(|| Error::Bug { what: format!("body {number}") })
     }
 
     /// The body of a number.
@@ -126,7 +134,7 @@ pub extern "C" fn nearmiss_detector_free(detector: Option<Box<NearmissDetector>>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nearmiss::{Body, Mesh, device::Backend, mesh::Positions};
+    use nearmiss::{Mesh, device::Backend, mesh::Positions};
 
     #[test]
     fn a_detector_is_not_used_after_a_fault() {

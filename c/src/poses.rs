@@ -128,10 +128,7 @@ pub extern "C" fn nearmiss_detector_body_poses(
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
     NearmissDetector::work(detector, error, |own| {
-        let id = own.body(body)?;
-        own.detector.download_positions()?;
-        let there =
-            own.detector.scene().get(id).ok_or_else(|| Error::Bug { what: format!("body {body}") })?;
+        let there = own.downloaded(body)?;
         check_rigid(body, there)?;
         for (to, Pose { rotation, translation }) in [start, end].into_iter().zip(there.poses()) {
             if let Some(to) = to {

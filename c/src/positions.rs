@@ -2,7 +2,6 @@
 
 use crate::detector::NearmissDetector;
 use crate::error::{NearmissCode, NearmissError, refused};
-use nearmiss::Error;
 use nearmiss::scene::BodyKind;
 use std::mem::MaybeUninit;
 
@@ -23,10 +22,7 @@ pub unsafe extern "C" fn nearmiss_detector_download_positions(
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
     NearmissDetector::work(detector, error, |own| {
-        let id = own.body(body)?;
-        own.detector.download_positions()?;
-        let there =
-            own.detector.scene().get(id).ok_or_else(|| Error::Bug { what: format!("body {body}") })?;
+        let there = own.downloaded(body)?;
         if there.vertex_count() != vertex_count {
             let what = format!("vertex_count of body {body} is wrong, got {vertex_count}");
             return Err(refused(what, format!("pass {}, and arrays with that room", there.vertex_count())));
