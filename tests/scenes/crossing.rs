@@ -10,13 +10,7 @@ use nearmiss::research::{TriangleTest, WithSolver};
 use nearmiss::scene::{BodyId, CollisionFilter, Motion, Pose, Scene};
 use nearmiss::{Body, Detector, Device, Discrete, Error, Mesh, MultiDetector};
 use support::engine;
-use support::solids::{box_faces, unit_sphere};
-
-/// A box between two corners.
-fn cuboid(low: [f64; 3], high: [f64; 3]) -> Mesh {
-    let corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { low[axis] } else { high[axis] });
-    Mesh::new("box", Positions::F64((0..8).map(corner).collect()), box_faces()).expect("a mesh")
-}
+use support::solids::{cuboid, unit_sphere};
 
 /// A sphere by rings, turned by an odd angle so that nothing is aligned.
 fn sphere(rings: u32, radius: f64, about: [f64; 3]) -> Mesh {

@@ -13,7 +13,7 @@ use nearmiss::{Body, Detector, Device, Mesh, Query};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 use support::engine;
-use support::solids::{box_faces, unit_sphere};
+use support::solids::{cuboid, rotation, unit_sphere};
 
 /// The query that reads instances if it can.
 fn query() -> Query {
@@ -66,13 +66,5 @@ fn sphere(rings: u32, radius: f64, about: [f64; 3]) -> Mesh {
 
 /// A box of that size.
 fn cube(size: f64) -> Mesh {
-    let corner = |k: usize| [0, 1, 2].map(|axis| size * (k >> axis & 1) as f64);
-    Mesh::new("box", Positions::F64((0..8).map(corner).collect()), box_faces()).expect("a mesh")
-}
-
-/// Any rotation.
-fn rotation(rng: &mut SmallRng) -> [f64; 4] {
-    let q: [f64; 4] = [(); 4].map(|()| rng.random_range(-1.0..1.0));
-    let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
-    q.map(|x| x / length)
+    cuboid([0.0; 3], [size; 3])
 }

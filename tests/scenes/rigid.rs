@@ -15,7 +15,7 @@ use nearmiss_lab::scene;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 use support::engine;
-use support::solids::{box_faces, unit_sphere};
+use support::solids::{box_faces, rotation, unit_sphere};
 
 /// The unit box.
 fn unit_box() -> Mesh {
@@ -33,12 +33,8 @@ fn sphere(rings: u32, radius: f64) -> Mesh {
 
 /// A rotation of any size, and a translation about a place.
 fn pose(rng: &mut SmallRng, place: [f64; 3], by: f64) -> Pose {
-    let [x, y, z, w]: [f64; 4] = [(); 4].map(|()| rng.random_range(-1.0..1.0));
-    let length = (x * x + y * y + z * z + w * w).sqrt();
-    Pose {
-        rotation: [x, y, z, w].map(|q| q / length),
-        translation: place.map(|x| x + rng.random_range(-by..by)),
-    }
+    let rotation = rotation(rng);
+    Pose { rotation, translation: place.map(|x| x + rng.random_range(-by..by)) }
 }
 
 /// Positions in a pose, by the host.

@@ -14,17 +14,11 @@ use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 use std::f64::consts::{FRAC_PI_2, PI};
 use support::engine;
-use support::solids::box_faces;
-
-/// A box with these lower and upper corners.
-fn solid([low, high]: [[f64; 3]; 2]) -> Mesh {
-    let corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 1 { high[axis] } else { low[axis] });
-    Mesh::new("box", Positions::F64((0..8).map(corner).collect()), box_faces()).expect("a mesh")
-}
+use support::solids::{cuboid, rotation};
 
 /// A bar of a length along x from the origin, and a width.
 fn bar(length: f64, width: f64) -> Mesh {
-    solid([[0.0, -width, -width], [length, width, width]])
+    cuboid([0.0, -width, -width], [length, width, width])
 }
 
 /// A pose turned about z, at a place.
@@ -89,13 +83,6 @@ fn straight(motions: &[(BodyId, Motion<'static>)]) -> Vec<(BodyId, Motion<'stati
     motions.iter().map(of).collect()
 }
 
-/// A rotation of any size.
-fn rotation(rng: &mut SmallRng) -> [f64; 4] {
-    let [x, y, z, w]: [f64; 4] = [(); 4].map(|()| rng.random_range(-1.0..1.0));
-    let length = (x * x + y * y + z * z + w * w).sqrt();
-    [x, y, z, w].map(|q| q / length)
-}
-
 fn vector(rng: &mut SmallRng, by: f64) -> [f64; 3] {
     [(); 3].map(|()| rng.random_range(-by..by))
 }
@@ -111,7 +98,7 @@ fn crowd(seed: u64, place: [f64; 3], size: f64) -> Case {
     };
     for body in 0..5 {
         let low = vector(&mut rng, 0.2);
-        let mesh = solid([low, [0, 1, 2].map(|k| low[k] + rng.random_range(0.1..1.5))]);
+        let mesh = cuboid(low, [0, 1, 2].map(|k| low[k] + rng.random_range(0.1..1.5)));
         let start = Pose { rotation: rotation(&mut rng), translation: at(&mut rng) };
         let end = Pose { rotation: rotation(&mut rng), translation: at(&mut rng) };
         let step = match body {

@@ -5,7 +5,7 @@ use super::*;
 /// A bar of length 2 turns by half a turn about the origin, towards +y. A peg stands at a quarter
 /// turn.
 fn bar_and_peg(step: PoseStep, gap: f64) -> Case {
-    let peg = solid([[-0.05, 1.0 + gap, -0.05], [0.05, 1.1 + gap, 0.05]]);
+    let peg = cuboid([-0.05, 1.0 + gap, -0.05], [0.05, 1.1 + gap, 0.05]);
     Case::new(vec![(Body::rigid(bar(1.0, 0.01)), Some(step)), (Body::fixed(peg), None)])
 }
 
@@ -47,12 +47,12 @@ fn the_time_is_that_of_the_arc() {
 #[test]
 fn a_door_turns_about_its_hinge() {
     // A door from the origin of its mesh, which is far from its hinge.
-    let door = solid([[5.0, 0.0, 0.0], [6.0, 0.05, 2.0]]);
+    let door = cuboid([5.0, 0.0, 0.0], [6.0, 0.05, 2.0]);
     let hinge = [5.0, 0.0, 0.0];
     let about = |pivot| PoseStep::new(Pose::default(), turned_about(FRAC_PI_2, hinge)).about(pivot);
     let at = |angle: f64| [5.0 + 0.9 * angle.cos(), 0.9 * angle.sin()];
     let [x, y] = at(0.8);
-    let stop = solid([[x - 0.01, y - 0.01, 0.5], [x + 0.01, y + 0.01, 0.6]]);
+    let stop = cuboid([x - 0.01, y - 0.01, 0.5], [x + 0.01, y + 0.01, 0.6]);
     let case =
         |step| Case::new(vec![(Body::rigid(door.clone()), Some(step)), (Body::fixed(stop.clone()), None)]);
     assert!(first(&case(about(hinge)).ask(Query::continuous())).is_some());
@@ -73,7 +73,7 @@ fn turned_about(angle: f64, pivot: [f64; 3]) -> Pose {
 #[test]
 fn the_long_way_round_is_not_the_short_one() {
     let angle = 350f64.to_radians();
-    let peg = solid([[-1.0, -0.05, -0.05], [-0.9, 0.05, 0.05]]);
+    let peg = cuboid([-1.0, -0.05, -0.05], [-0.9, 0.05, 0.05]);
     let case =
         |step| Case::new(vec![(Body::rigid(bar(1.0, 0.01)), Some(step)), (Body::fixed(peg.clone()), None)]);
     let long = case(PoseStep::turning(Pose::default(), [0.0, 0.0, angle], [0.0; 3]));
@@ -109,7 +109,7 @@ fn a_wheel_that_rolls_touches_only_what_it_reaches() {
         [[a, c, b], [b, c, d]]
     });
     let wheel = Mesh::new("a wheel", Positions::F64(points), faces.collect()).expect("a mesh");
-    let floor = |y: f64| solid([[-1.0, y - 1.0, -1.0], [9.0, y, 1.0]]);
+    let floor = |y: f64| cuboid([-1.0, y - 1.0, -1.0], [9.0, y, 1.0]);
     for (y, meets) in [(-1.0 - 1e-6, false), (-1.0 + 1e-3, true)] {
         // Turned by half a side at first, so that no corner is at the bottom.
         let start = turned(0.39, [0.0; 3]);

@@ -118,7 +118,7 @@ fn of_a_frame_whatever_came_before() {
 /// Poses in device memory: in a frame, in a submission, and again after they changed.
 #[test]
 fn of_poses_on_the_device() {
-    let meshes = [bar(1.0, 0.01), solid([[-0.05, 0.5, -0.05], [0.05, 0.6, 0.05]])];
+    let meshes = [bar(1.0, 0.01), cuboid([-0.05, 0.5, -0.05], [0.05, 0.6, 0.05])];
     let mut scene = Scene::new();
     let rigid = scene.add(Body::rigid(meshes[0].clone()));
     scene.add(Body::fixed(meshes[1].clone()));

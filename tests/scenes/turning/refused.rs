@@ -17,7 +17,7 @@ fn a_step_that_is_none_is_named_and_the_detector_goes_on() {
     ];
     let mut scene = Scene::new();
     let arm = scene.add(Body::rigid(bar(1.0, 0.01)));
-    scene.add(Body::fixed(solid([[-0.05, 0.5, -0.05], [0.05, 0.6, 0.05]])));
+    scene.add(Body::fixed(cuboid([-0.05, 0.5, -0.05], [0.05, 0.6, 0.05])));
     let mut detector = OneQuery::new(engine(), scene, Query::continuous()).expect("a detector");
     let good = [(arm, Motion::PoseStep(PoseStep::turning(start, [0.0, 0.0, PI], [0.0; 3])))];
     let expected = rows(&detector.frame(&good).expect("an answer"));

@@ -1,5 +1,9 @@
-//! A box and a sphere.
+//! Boxes, spheres, and rotations of them.
 
+use nearmiss::Mesh;
+use nearmiss::mesh::Positions;
+use rand::Rng;
+use rand::rngs::SmallRng;
 use std::f64::consts::PI;
 
 /// The unit sphere about the origin, by rings and twice as many meridians: its points, and its
@@ -23,6 +27,19 @@ pub fn unit_sphere(rings: u32) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
         [[a, b, c], [a, c, d]]
     });
     (points, triangles.filter(|[a, b, c]| a != b && b != c && a != c).collect())
+}
+
+/// A box between two corners, in doubles.
+pub fn cuboid(low: [f64; 3], high: [f64; 3]) -> Mesh {
+    let corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { low[axis] } else { high[axis] });
+    Mesh::new("box", Positions::F64((0..8).map(corner).collect()), box_faces()).expect("a mesh")
+}
+
+/// Any rotation.
+pub fn rotation(rng: &mut SmallRng) -> [f64; 4] {
+    let q: [f64; 4] = [(); 4].map(|()| rng.random_range(-1.0..1.0));
+    let length = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+    q.map(|x| x / length)
 }
 
 /// The faces of a box whose corner `k` is at bit 0, 1 and 2 of `k`.
