@@ -70,7 +70,7 @@ impl PoseStep {
 
     /// Return the step that turns by a rotation vector while its pivot moves by `travel`.
     ///
-    /// Turns of more than 180 degrees need it: two poses cannot say them.
+    /// Turns of more than 180 degrees need it: two poses cannot give them.
     ///
     /// - `start`: a Pose or a (4, 4) array.
     /// - `turn`: 3 numbers in the axes of the scene, in radians: angular velocity times the length of

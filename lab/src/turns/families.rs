@@ -57,14 +57,14 @@ struct Plan {
 }
 
 /// A body that deforms, with the pivot of another.
-fn deformable(r: &mut Choice, beside: &Body, differ: f64) -> Body {
+fn deformable(r: &mut Choice, near: &Body, differ: f64) -> Body {
     let speed = times(r.between(0.0, 1.0), r.direction());
-    Body { phi: [0.0; 3], pivot: beside.pivot, speed: Some((speed, differ)) }
+    Body { phi: [0.0; 3], pivot: near.pivot, speed: Some((speed, differ)) }
 }
 
 /// A body that does not move.
-fn fixed(beside: &Body) -> Body {
-    Body { phi: [0.0; 3], pivot: beside.pivot, speed: Some(([0.0; 3], 0.0)) }
+fn fixed(near: &Body) -> Body {
+    Body { phi: [0.0; 3], pivot: near.pivot, speed: Some(([0.0; 3], 0.0)) }
 }
 
 /// The `i`th pair of a family, for a seed; half of them are edges.
