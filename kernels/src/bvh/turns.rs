@@ -26,12 +26,6 @@ pub fn swell<R: Real, L: Lane>(lane: &L, frames: &Positions<R>, corners: [u32; 3
     if !R::WIDE || frames.turns.is_empty() {
         return 0.0;
     }
-    of_corners(lane, frames, corners)
-}
-
-/// The same in a scene with bodies that turn: out of line, so that other scenes do not pay for it.
-#[inline(never)]
-fn of_corners<R: Real, L: Lane>(lane: &L, frames: &Positions<R>, corners: [u32; 3]) -> f32 {
     let record = body_of(lane, frames.turns, corners[0]).unwrap_or_default();
     let ends = corners.map(|vertex| lane.read(frames.moving, vertex));
     swell_of(&record, ends.map(|ends| [ends.t0.at.wide(), ends.t1.at.wide()]))
@@ -44,7 +38,7 @@ fn of_corners<R: Real, L: Lane>(lane: &L, frames: &Positions<R>, corners: [u32; 
 /// as much as the corner that does so farthest. A triangle that does not turn has a swell too, for
 /// the rounding of its place as others see it: see [`SWELL`]. Volumes of fixed bodies are fitted
 /// once and have none, so those that turn have theirs.
-#[inline]
+#[inline(always)]
 pub fn swell_of(record: &TurnRecord, corners: [[Vec3<f64>; 2]; 3]) -> f32 {
     let most = |v: Vec3<f64>| Real::abs(v[0]).greater(Real::abs(v[1])).greater(Real::abs(v[2]));
     let (turn, path) = (Vec3(record.turn), record.path.map(Vec3));

@@ -115,24 +115,50 @@ fn of_a_frame_whatever_came_before() {
     }
 }
 
+/// The ends of a step about the origin, in memory of the device.
+struct Lent {
+    rotations: [[f64; 4]; 2],
+    still: [f64; 3],
+}
+
+impl Lent {
+    fn new(angle: f64) -> Box<Lent> {
+        let rotations = [0.0, angle].map(|angle| turned(angle, [0.0; 3]).rotation);
+        Box::new(Lent { rotations, still: [0.0; 3] })
+    }
+
+    /// The step. The memory outlives the detector.
+    fn motion(&self) -> DeviceMotion {
+        // SAFETY: it outlives the detector's use of it, on a CPU; nothing writes while a call runs.
+        let rows_at = |address: *const f64, width: usize| unsafe {
+            DeviceRows::new(address as u64, 1, 8 * width, Number::F64).expect("rows")
+        };
+        DeviceMotion::PoseStep(self.rotations.each_ref().map(|rotation| DevicePose {
+            translation: rows_at(self.still.as_ptr(), 3),
+            rotation: rows_at(rotation.as_ptr(), 4),
+        }))
+    }
+
+    fn turn(&mut self, angle: f64) {
+        self.rotations[1] = turned(angle, [0.0; 3]).rotation;
+        std::hint::black_box(self);
+    }
+}
+
+/// A bar that turns, and a peg.
+fn bar_and_peg() -> (Scene, BodyId) {
+    let mut scene = Scene::new();
+    let bar = scene.add(Body::rigid(bar(1.0, 0.01)));
+    scene.add(Body::fixed(cuboid([-0.05, 0.5, -0.05], [0.05, 0.6, 0.05])));
+    (scene, bar)
+}
+
 /// Poses in device memory: in a frame, in a submission, and again after they changed.
 #[test]
 fn of_poses_on_the_device() {
-    let meshes = [bar(1.0, 0.01), cuboid([-0.05, 0.5, -0.05], [0.05, 0.6, 0.05])];
-    let mut scene = Scene::new();
-    let rigid = scene.add(Body::rigid(meshes[0].clone()));
-    scene.add(Body::fixed(meshes[1].clone()));
-    let mut rotations = [turned(0.0, [0.0; 3]).rotation, turned(3.0, [0.0; 3]).rotation];
-    let still = [[0.0f64; 3]; 1];
-    // SAFETY: both outlive the detector's use of them, on a CPU; nothing writes while a call runs.
-    let rows_at = |address: *const f64, width: usize| unsafe {
-        DeviceRows::new(address as u64, 1, 8 * width, Number::F64).expect("rows")
-    };
-    let pose = |rotation: &[f64; 4]| DevicePose {
-        translation: rows_at(still.as_ptr().cast(), 3),
-        rotation: rows_at(rotation.as_ptr(), 4),
-    };
-    let motion = DeviceMotion::PoseStep([pose(&rotations[0]), pose(&rotations[1])]);
+    let (scene, rigid) = bar_and_peg();
+    let mut lent = Lent::new(3.0);
+    let motion = lent.motion();
     let by_host = |rotations: [[f64; 4]; 2]| {
         let poses = rotations.map(|rotation| Pose { rotation, ..Pose::default() });
         let mut detector = OneQuery::new(engine(), scene.clone(), query()).expect("a detector");
@@ -140,19 +166,37 @@ fn of_poses_on_the_device() {
     };
     let mut detector = OneQuery::new(engine(), scene.clone(), query()).expect("a detector");
     let found = detector.frame(&[(rigid, Motion::OnDevice(motion))]).expect("an answer");
-    assert_eq!(rows(&found), rows(&by_host(rotations)));
+    assert_eq!(rows(&found), rows(&by_host(lent.rotations)));
     assert!(first(&found).is_some());
     detector.prepare(&[(rigid, motion)]).expect("prepared");
     let mut met = 0;
     for angle in [3.0, 1.0, 0.0, 2.0] {
-        rotations[1] = turned(angle, [0.0; 3]).rotation;
-        std::hint::black_box(&rotations);
+        lent.turn(angle);
         detector.submit().expect("prepared");
         let found = detector.collect().expect("an answer");
-        assert_eq!(contacts(&found), contacts(&by_host(rotations)), "{angle}");
+        assert_eq!(contacts(&found), contacts(&by_host(lent.rotations)), "{angle}");
         met += usize::from(first(&found).is_some());
     }
     assert_eq!(met, 2);
+}
+
+/// A body that turned by poses of the device and rests now is where it came to rest: contacts with
+/// it have their geometry there.
+#[test]
+fn geometry_of_a_body_that_rests_on_the_device() {
+    let (mut scene, bar) = bar_and_peg();
+    let comes = scene.add(Body::rigid(cuboid([-0.1; 3], [0.1; 3])));
+    let lent = Lent::new(1.0);
+    let mut detector = Detector::new(engine(), scene).expect("a detector");
+    let continuous = nearmiss::Continuous::default();
+    detector.step(&[(bar, Motion::OnDevice(lent.motion()))], &continuous).expect("an answer");
+    // The bar rests at one radian; the box falls on its middle from above.
+    let [x, y] = [0.5 * 1f64.cos(), 0.5 * 1f64.sin()];
+    let falls = PoseStep::new(Pose::at([x, y, 1.0]), Pose::at([x, y, 0.0]));
+    let found = detector.step(&[(comes, Motion::PoseStep(falls))], &continuous).expect("an answer");
+    let geometry = detector.geometry(&found).expect("points");
+    assert!(!geometry.is_empty());
+    assert!(geometry.iter().all(|row| row.distance < 1e-3), "{geometry:?}");
 }
 
 /// Bodies that do not turn launch nothing for those that could: no pair is tested on an arc.
