@@ -1058,7 +1058,8 @@ NearmissMotion nearmiss_motion_pose(uint32_t body, NearmissPose pose);
 NearmissMotion nearmiss_motion_pose_step(uint32_t body, NearmissPose start, NearmissPose end);
 
 // A rigid body that begins in a pose and turns by a rotation vector. Set `turn` then, and `travel`
-// and `pivot` unless they are 0. Turns of more than 180 degrees need it: two poses cannot give them.
+// and `pivot` unless they are 0. Turns of more than 180 degrees need it: two poses cannot give
+// them.
 NearmissMotion nearmiss_motion_turning(uint32_t body, NearmissPose start);
 
 // Writes the number of the body with that name to `id`.

@@ -129,7 +129,8 @@ pub extern "C" fn nearmiss_motion_pose_step(
 }
 
 /// A rigid body that begins in a pose and turns by a rotation vector. Set `turn` then, and `travel`
-/// and `pivot` unless they are 0. Turns of more than 180 degrees need it: two poses cannot give them.
+/// and `pivot` unless they are 0. Turns of more than 180 degrees need it: two poses cannot give
+/// them.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_motion_turning(body: u32, start: NearmissPose) -> NearmissMotion {
     let kind = NearmissMotionKind::NEARMISS_MOTION_TURNING;
