@@ -271,3 +271,22 @@ fn sizes_that_cannot_be_are_refused() {
         assert_eq!(by(Traversal::Steal(shape), QueryKind::Discrete).check().is_ok(), fits, "{shape:?}");
     }
 }
+
+/// A block offers up to 16 chunks at once. All of its lanes together must give each of them.
+#[test]
+fn blocks_of_any_number_of_lanes_that_steal() {
+    for bodies in crowds() {
+        let truth = truth(&bodies, QueryKind::Discrete);
+        for lanes in [1, 2, 3, 7, 15, 16, 33] {
+            for eager in [false, true] {
+                let shape = StealShape { cores: Some(9), pool: Some(300), eager, ..StealShape::native() };
+                for mode in [Mode::Engine, Mode::Sanitizer(ORDERS[2])] {
+                    let machine = Emulator::new(mode, None).expect("an emulator").with_lanes(lanes);
+                    let query = by(Traversal::Steal(shape), QueryKind::Discrete);
+                    let device = Device::emulator(machine);
+                    assert_eq!(found(device, &bodies, query).0, truth, "{lanes} lanes, {shape:?}");
+                }
+            }
+        }
+    }
+}

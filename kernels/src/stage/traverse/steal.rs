@@ -154,7 +154,8 @@ fn offer<V: Volume, B: Block>(
         if lane.lane() == 0 {
             // A block with more than a step's units serves more tickets.
             let wish = lane.get(words, SHARE) * (top / policy.keep.max(1));
-            let chunks = wish.min(MOST_OFFERS).min(spare / policy.least);
+            // A lane gives each chunk.
+            let chunks = wish.min(MOST_OFFERS).min(lanes).min(spare / policy.least);
             let units = (spare / chunks).min(CHUNK);
             let before = lane.fetch_add(args.control, 0, chunks as u64 * (OFFER + WORK));
             let place = Counts::of(before).offers;
