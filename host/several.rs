@@ -217,6 +217,21 @@ impl MultiDetector {
         Ok(())
     }
 
+    /// As [`Detector::leave_out`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn leave_out(&mut self, pairs: &[[BodyId; 2]]) -> Result<(), Error> {
+        self.each(|detector| detector.leave_out(pairs))?;
+        self.divisions.clear();
+        Ok(())
+    }
+
+    /// As [`Detector::left_out`].
+    pub fn left_out(&self) -> &[[BodyId; 2]] {
+        self.parts[0].left_out()
+    }
+
     /// As [`Detector::geometry`].
     ///
     /// # Errors

@@ -69,7 +69,8 @@ impl Detector {
             return Ok(());
         }
         self.download_positions()?;
-        let below = BelowPrecision::of_earliest(self.scene.bodies(), &certified, own);
+        let layout = self.layout(&question.query)?;
+        let below = BelowPrecision::of_earliest((self.scene.bodies(), &layout), &certified, own);
         if below == Some(BelowPrecision::Unlisted) {
             contacts.caveats.push(unlisted);
         }

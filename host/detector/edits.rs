@@ -1,13 +1,15 @@
-//! Bodies are added, replaced and removed between frames.
+//! Bodies are added, replaced and removed between frames, and pairs of them left out.
 
 use super::Detector;
 use super::engine::fits;
 use crate::error::Error;
+#[cfg(doc)]
+use crate::scene::Scene;
 use crate::scene::{Body, BodyId};
 
 impl Detector {
-    /// Replaces a body by another, of any mesh, under its number, from the next frame on. Cost: as
-    /// of [`Detector::new`], at the next frame.
+    /// Replaces a body by another, of any mesh, under its number, from the next frame on. It keeps
+    /// the pairs that are left out. Cost: as of [`Detector::new`], at the next frame.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] for a body that is not in the scene, and for self-collision of a
@@ -40,8 +42,8 @@ impl Detector {
         Ok(id)
     }
 
-    /// Removes a body from the scene, from the next frame on; other bodies keep their numbers.
-    /// Cost: as of [`Detector::new`], at the next frame.
+    /// Removes a body from the scene, from the next frame on, and its pairs in the list of those
+    /// that are left out. Other bodies keep their numbers. Cost: as of [`Detector::new`], at the next frame.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] for a body that is not in the scene.
@@ -51,6 +53,28 @@ impl Detector {
         let body = self.scene.remove(id).ok_or_else(|| empty(id))?;
         self.changed();
         Ok(body)
+    }
+
+    /// Replaces the list of pairs of bodies that are not tested against each other, from the next
+    /// frame on: see [`Scene::leave_out`]. Cost: as of [`Detector::new`], at the next frame. If the
+    /// list is the same, nothing changes. Another list ends the preparation of submissions.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] for a body that is not in the scene, and for a body with itself.
+    /// On an error nothing has changed.
+    pub fn leave_out(&mut self, pairs: &[[BodyId; 2]]) -> Result<(), Error> {
+        let list = self.scene.checked(pairs)?;
+        if list != self.scene.left_out {
+            self.download_positions()?;
+            self.scene.left_out = list;
+            self.changed();
+        }
+        Ok(())
+    }
+
+    /// As [`Scene::left_out`].
+    pub fn left_out(&self) -> &[[BodyId; 2]] {
+        self.scene.left_out()
     }
 
     /// Checks that there is room for a body, in place of an old one if there is one.

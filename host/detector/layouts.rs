@@ -57,7 +57,9 @@ impl Layouts {
                 let is_done = !view.has_features || layout.has_features();
                 if is_done { Some(layout) } else { layout.with_features(bodies, &looks) }
             }
-            None => Layout::within(bodies, query.kind(), &looks),
+            None => {
+                Layout::within(bodies, query.kind(), &looks).map(|layout| layout.without(scene.left_out()))
+            }
         };
         let mut layout = made.ok_or(Error::Interrupted)?;
         layout.find_hubs(query.keeps_adjacent());

@@ -1,6 +1,7 @@
 //! Checks whether the solver's precision is too low for the tolerance. It depends on the positions
 //! and runs once for each set of positions.
 
+use super::layout::Layout;
 use super::list::List;
 use super::narrow::NarrowContext;
 use super::precision::Precision;
@@ -9,7 +10,7 @@ use crate::error::Error;
 use crate::mesh::Positions;
 use crate::pipeline::launch;
 use crate::query::{Certified, CertifiedPrecision};
-use crate::scene::{Body, BodyKind, Bounds, NOTHING, union};
+use crate::scene::{Body, Bounds, NOTHING, union};
 use nearmiss_kernels::abi::{BelowPrecisionArgs, BodyTolerance, Hit, Span};
 use nearmiss_kernels::math::tolerance::Tolerance;
 use rayon::prelude::*;
@@ -33,7 +34,7 @@ impl BelowPrecision {
     /// have several. Returns none for an earliest query with a device-resident body: the detector
     /// checks it after the frame.
     pub fn of(
-        bodies: &[Body],
+        (bodies, layout): (&[Body], &Layout),
         certified: &Certified,
         finest: Option<f64>,
         is_earliest: bool,
@@ -43,7 +44,7 @@ impl BelowPrecision {
             return BelowPrecision::of_listed(bodies, &Certified { tolerance, ..*certified });
         }
         let is_known = !bodies.iter().any(Body::is_device_resident);
-        is_known.then(|| BelowPrecision::of_earliest(bodies, certified, finest.is_some())).flatten()
+        is_known.then(|| BelowPrecision::of_earliest((bodies, layout), certified, finest.is_some())).flatten()
     }
 
     /// Returns the caveat of a query that lists pairs; none if no pair can be that large. Cost: a
@@ -65,7 +66,11 @@ impl BelowPrecision {
     /// distance do not count. `own` is whether each pair has its own tolerance. It costs a pass
     /// over the positions, and one over the faces of bodies whose extent is too large. Each body
     /// with a long edge costs a pass over all bodies.
-    pub fn of_earliest(bodies: &[Body], certified: &Certified, own: bool) -> Option<BelowPrecision> {
+    pub fn of_earliest(
+        (bodies, layout): (&[Body], &Layout),
+        certified: &Certified,
+        own: bool,
+    ) -> Option<BelowPrecision> {
         let tolerance =
             |a: &Body, b: &Body| if own { of_pair(a, b) } else { certified.tolerance.unwrap_or(0.0) };
         // The smallest tolerance of all pairs is that of a body with itself.
@@ -78,7 +83,7 @@ impl BelowPrecision {
         let large = (0..bodies.len()).filter(|&i| is_long(extent(&boxes[i]), least));
         let long: Vec<(usize, f64)> = large.map(|i| (i, longest_side(&bodies[i]))).collect();
         let within = certified.min_separation + certified.tolerance.unwrap_or(0.0);
-        let meets = |i: usize, j: usize| may_meet(bodies, [i, j]) && are_near([&boxes[i], &boxes[j]], within);
+        let meets = |i: usize, j: usize| layout.tests(i, j) && are_near([&boxes[i], &boxes[j]], within);
         let has_partner = |(i, side): (usize, f64)| {
             let mut others = (0..bodies.len()).filter(|&j| is_long(side, tolerance(&bodies[i], &bodies[j])));
             others.any(|j| meets(i, j))
@@ -156,19 +161,6 @@ fn longest_side(body: &Body) -> f64 {
         [[p, q], [q, r], [r, p]].into_iter().map(|[p, q]| largest(&ends, p, q)).fold(0.0, f64::max)
     };
     body.faces().par_iter().map(of_face).reduce(|| 0.0, f64::max)
-}
-
-/// Returns whether pairs of two bodies, or of a body and itself, are tested.
-fn may_meet(bodies: &[Body], [i, j]: [usize; 2]) -> bool {
-    let [a, b] = [&bodies[i], &bodies[j]];
-    if a.face_count() == 0 || b.face_count() == 0 {
-        return false;
-    }
-    if i == j {
-        return a.self_collides();
-    }
-    let is_static = |body: &Body| body.kind() == BodyKind::Fixed;
-    a.filter().allows(b.filter()) && !(is_static(a) && is_static(b))
 }
 
 /// Growth of boxes, as a fraction of the largest coordinate: more than rounding adds to a volume.

@@ -7,8 +7,7 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::memory;
 use crate::query::{ListedRows, Query};
-use crate::scene::CollisionFilter;
-use nearmiss_kernels::abi::{BodyRecord, Counter, EVERY, counter};
+use nearmiss_kernels::abi::{Counter, counter};
 
 /// Least size in bytes of an answer that is compared with free memory.
 const LITTLE: u64 = 16 << 20;
@@ -171,20 +170,6 @@ fn groups(triangles: &mut [u32], all: &mut Vec<Group>, (layout, positions): (&La
     own
 }
 
-/// Returns whether two bodies, or a body and itself, are tested.
-fn may_meet(layout: &Layout, a: usize, b: usize) -> bool {
-    let is_static = |body| layout.trees[1].contains(&body);
-    if a == b {
-        return layout.records[a].self_collision != 0 && !is_static(a);
-    }
-    let meets = |body: usize| {
-        let BodyRecord { environment, group, mask, .. } = layout.records[body];
-        let environment = (environment != EVERY).then_some(environment);
-        CollisionFilter { environment, group, mask, ..CollisionFilter::default() }
-    };
-    meets(a).allows(&meets(b)) && !(is_static(a) && is_static(b))
-}
-
 /// Returns a number of pairs of features that are certainly within a distance, and have no common
 /// vertex.
 fn least(layout: &Layout, positions: &[[f64; 3]], within: f64) -> u64 {
@@ -199,7 +184,7 @@ fn least(layout: &Layout, positions: &[[f64; 3]], within: f64) -> u64 {
         .collect();
     let mut waiting = Vec::new();
     for (at, &(a, one)) in roots.iter().enumerate() {
-        let others = roots[at..].iter().filter(|&&(b, _)| may_meet(layout, a, b));
+        let others = roots[at..].iter().filter(|&&(b, _)| layout.tests(a, b));
         waiting.extend(others.map(|&(_, two)| (one, two)));
     }
     let square = (CERTAIN * within).powi(2);
@@ -227,7 +212,7 @@ fn least(layout: &Layout, positions: &[[f64; 3]], within: f64) -> u64 {
             }
         }
     }
-    let tested = (0..layout.bodies()).filter(|&body| may_meet(layout, body, body));
+    let tested = (0..layout.bodies()).filter(|&body| layout.tests(body, body));
     rows.saturating_sub(tested.map(|body| adjacent(layout, body)).sum())
 }
 
@@ -289,7 +274,7 @@ mod tests {
         let fixed = || Body::fixed(soup(30, 1, false).frames().swap_remove(0));
         let bodies = [fixed(), fixed(), soup(40, 2, false).with_filter(CollisionFilter::default())];
         let layout = Layout::new(&bodies, Query::near(1.0).kind());
-        let tested = |a, b| may_meet(&layout, a, b);
+        let tested = |a, b| layout.tests(a, b);
         assert!(!tested(0, 0) && !tested(0, 1) && tested(0, 2) && tested(1, 2));
         let whole = least(&layout, &points(&bodies), 1e3);
         // Each fixed body has 90 vertices, 30 faces and 90 edges; the other has 120, 40 and 120.

@@ -6,6 +6,7 @@ use crate::query::QueryKind;
 use crate::scene::{Body, BodyId, BodyKind, CollisionFilter};
 use nearmiss_emulator::Looks;
 use nearmiss_kernels::abi::{BodyRecord, EVERY, NodeFilter};
+use nearmiss_kernels::bvh::filter::is_left_out;
 use std::sync::Arc;
 
 /// Offsets of a body's indices in the layout.
@@ -37,6 +38,9 @@ pub struct Layout {
     /// Hubs of each triangle if pairs round a hub are candidates, so that only the rims exclude
     /// pairs; empty without hubs.
     pub rims: Arc<Vec<u32>>,
+    /// The pairs of bodies that are left out, as kernels read them: see `FilterArgs::left_out`;
+    /// empty without such.
+    pub left_out: Arc<Vec<u32>>,
     /// The bodies with triangles that may move, and those that are fixed.
     pub trees: [Vec<usize>; 2],
 }
@@ -94,6 +98,20 @@ impl Layout {
         }
         all.faces = Arc::new(faces);
         if kind.is_of_features() { all.with_features(bodies, looks) } else { Some(all) }
+    }
+
+    /// Leaves out pairs of bodies, each with the smaller number first, in ascending order. Cost:
+    /// linear in pairs, and a search a body.
+    pub fn without(self, pairs: &[[BodyId; 2]]) -> Layout {
+        if pairs.is_empty() {
+            return self;
+        }
+        // A place for each body, and the end; then the larger numbers.
+        let places = self.bodies() + 1;
+        let first = |body: usize| places + pairs.partition_point(|[p, _]| p.index() < body);
+        let mut list: Vec<u32> = (0..places).map(|body| first(body) as u32).collect();
+        list.extend(pairs.iter().map(|[_, q]| q.0));
+        Layout { left_out: Arc::new(list), ..self }
     }
 
     /// Adds edges and owners of the same bodies; `None` if the work was interrupted. Cost: linear
@@ -170,6 +188,26 @@ impl Layout {
         let [moving, fixed] = &self.trees;
         let alone = moving.len() == 1 && fixed.is_empty();
         !moving.is_empty() && (!alone || self.records[moving[0]].self_collision != 0)
+    }
+
+    /// Returns whether triangles of two bodies, or of a body and itself, are tested against each
+    /// other. It decides as `FilterArgs::allows` does.
+    pub fn tests(&self, a: usize, b: usize) -> bool {
+        let is_fixed = |body: usize| self.trees[1].binary_search(&body).is_ok();
+        if [a, b].iter().any(|&body| self.triangles(body).1 == 0) || (is_fixed(a) && is_fixed(b)) {
+            return false;
+        }
+        if a == b {
+            return self.records[a].self_collision != 0;
+        }
+        let meets = |body: usize| {
+            let BodyRecord { environment, group, mask, .. } = self.records[body];
+            let environment = (environment != EVERY).then_some(environment);
+            CollisionFilter { environment, group, mask, ..CollisionFilter::default() }
+        };
+        let word = |i: u32| self.left_out[i as usize];
+        let is_listed = !self.left_out.is_empty() && is_left_out(a as u32, b as u32, word);
+        meets(a).allows(&meets(b)) && !is_listed
     }
 
     /// Returns whether the tested pairs depend on their bodies, or on hubs.

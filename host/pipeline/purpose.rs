@@ -38,6 +38,8 @@ pub const RIMS: &str = "hub of each triangle, volumes of the edges opposite to i
 pub const SHARES: &str = "cost of each tile, to divide work among devices";
 /// Records of bodies.
 pub const RECORDS: &str = "environment, groups and ranges of each body";
+/// Pairs of bodies that are left out.
+pub const LEFT_OUT: &str = "pairs of bodies that are left out";
 /// Tolerances of bodies.
 pub const TOLERANCES: &str = "tolerance of each body";
 /// Counters of a frame.

@@ -5,6 +5,7 @@
 
 mod body;
 mod device_motion;
+mod left_out;
 mod matrix;
 mod motion;
 mod names;
@@ -66,7 +67,7 @@ pub enum BodyKind {
 /// Two bodies are tested against each other if environments and groups allow it. Environments allow
 /// it if they are equal or one is `None`. Groups allow it if each body is in a group that the
 /// other's mask has. Deformable bodies are tested against themselves by default, rigid bodies if
-/// `self_collision` is true, fixed bodies never.
+/// `self_collision` is true, fixed bodies never. [`Scene::leave_out`] leaves out pairs by a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CollisionFilter {
     /// Environment; `None` for a body that is in every one. Bodies of different environments never
@@ -146,6 +147,8 @@ pub struct Scene {
     removed: Vec<bool>,
     /// Numbers of removed bodies.
     free: Vec<u32>,
+    /// Pairs of bodies that are left out: the smaller number first, ascending.
+    pub(crate) left_out: Vec<[BodyId; 2]>,
 }
 
 impl Scene {
@@ -170,10 +173,12 @@ impl Scene {
         }
     }
 
-    /// Removes a body; `None` if there is none of that number.
+    /// Removes a body, and its pairs in the list of those that are left out. `None` if there is
+    /// none of that number.
     pub fn remove(&mut self, id: BodyId) -> Option<Body> {
         self.get(id)?;
         self.free.push(id.0);
+        self.forget_pairs(id);
         self.removed[id.index()] = true;
         Some(std::mem::replace(&mut self.bodies[id.index()], Body::none()))
     }
@@ -212,7 +217,7 @@ impl Scene {
 impl From<Vec<Body>> for Scene {
     /// Numbers bodies in their order.
     fn from(bodies: Vec<Body>) -> Scene {
-        Scene { removed: vec![false; bodies.len()], bodies, free: Vec::new() }
+        Scene { removed: vec![false; bodies.len()], bodies, ..Scene::default() }
     }
 }
 

@@ -17,7 +17,8 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::query::{BroadPhase, Query, WithVolume};
 use nearmiss_kernels::abi::{
-    BodyRecord, Counters, InstanceTables, NodePair, Output, Pair, Positions, Relation, Span, TraverseFlags,
+    BodyRecord, Counters, FilterArgs, InstanceTables, NodePair, Output, Pair, Positions, Relation, Span,
+    TraverseFlags,
 };
 use nearmiss_kernels::bvh::Violation;
 use nearmiss_kernels::entry::Kernels;
@@ -38,6 +39,8 @@ pub struct BroadContext<'a, R: Precision> {
     pub faces: Span<[u32; 3]>,
     /// Records of the bodies for the kernels; empty if there is only one body.
     pub records: Span<BodyRecord>,
+    /// Filters of the bodies, without nodes: groups and pairs that are left out.
+    pub filters: FilterArgs,
     /// Whether launches may be recorded, and run later or never: the host must not rely on them.
     pub is_submitted: bool,
     /// Meshes and poses, if a query reads bodies as instances.

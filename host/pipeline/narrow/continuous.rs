@@ -11,6 +11,7 @@ use crate::device::{Ahead, Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::below_precision::{self, BelowPrecision};
 use crate::pipeline::counts::Counts;
+use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{GrowableOutput, List, Named, named};
 use crate::pipeline::order::{Order, Ordering, Unordered};
 use crate::pipeline::precision::Precision;
@@ -335,9 +336,9 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
         lists
     }
 
-    fn place(&mut self, bodies: &[Body]) {
+    fn place(&mut self, bodies: &[Body], layout: &Layout) {
         let of = |certified: &Certified| {
-            BelowPrecision::of(bodies, certified, self.finest, self.earliest.is_some())
+            BelowPrecision::of((bodies, layout), certified, self.finest, self.earliest.is_some())
         };
         self.below_precision = self.solver.certified().and_then(of);
     }

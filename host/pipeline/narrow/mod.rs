@@ -105,7 +105,7 @@ pub trait Narrow<R: Precision>: Send {
     fn between<'a>(&'a self, features: &'a Features) -> Vec<Named<'a>>;
 
     /// Updates for new positions: the size of the bodies may matter.
-    fn place(&mut self, _bodies: &[Body]) {}
+    fn place(&mut self, _bodies: &[Body], _layout: &Layout) {}
 
     /// Returns the device's ordering; none if there is nothing to order.
     fn ordering(&mut self) -> Option<&mut dyn Ordering>;

@@ -15,7 +15,7 @@ use crate::pipeline::wear::Wear;
 use crate::query::Query;
 use crate::scene::Body;
 use crate::stages::Stage;
-use nearmiss_kernels::abi::{BodyRecord, Span};
+use nearmiss_kernels::abi::{BodyRecord, FilterArgs, Span};
 use std::sync::Arc;
 
 /// Initial capacity, in candidates per triangle. Cloth at rest has 8, cloth swept over a step 50. A
@@ -36,6 +36,7 @@ pub struct QueryMemory<R: Precision> {
     pub query: Query,
     pub layout: Arc<Layout>,
     records: Buffer<BodyRecord>,
+    has_groups: bool,
     /// The index of its broad phase.
     pub broad: usize,
     /// Whether it reads bodies as instances.
@@ -91,6 +92,7 @@ impl<R: Precision> QueryMemory<R> {
             shape,
             query: *query,
             records: device.of(purpose::RECORDS).upload(records(layout))?,
+            has_groups: layout.has_groups(),
             broad,
             is_of_instances: *is_of_instances,
             counters: FrameCounters::new(&device)?,
@@ -130,6 +132,12 @@ impl<R: Precision> QueryMemory<R> {
         self.query.kind().is_at_rest()
     }
 
+    /// Returns the filters of the bodies, without nodes and pairs that are left out.
+    pub fn filters(&self) -> FilterArgs {
+        let bodies = if self.has_groups { self.records.span() } else { Span::EMPTY };
+        FilterArgs { bodies, ..FilterArgs::NONE }
+    }
+
     /// Returns the records of the bodies for the kernels.
     pub fn records(&self) -> Span<BodyRecord> {
         self.records.span()
@@ -142,7 +150,7 @@ impl<R: Precision> QueryMemory<R> {
     /// Device errors.
     pub fn ready(&mut self, scene: &mut SceneMemory<R>, bodies: &[Body]) -> Result<bool, Error> {
         if self.seen != Some(scene.placings) {
-            self.narrow.place(bodies);
+            self.narrow.place(bodies, &self.layout);
             self.seen = Some(scene.placings);
         }
         if self.is_of_instances {

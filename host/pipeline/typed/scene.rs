@@ -15,7 +15,7 @@ use crate::pipeline::purpose;
 use crate::pipeline::{Layout, QueryParts, SceneParts};
 use crate::query::{self, BoundingVolume, Query};
 use crate::scene::Body;
-use nearmiss_kernels::abi::{BodyRecord, Pair, counter};
+use nearmiss_kernels::abi::{BodyRecord, FilterArgs, Pair, counter};
 
 /// The choices that two queries must have in common to share a broad phase.
 #[derive(Clone, Copy, PartialEq)]
@@ -51,6 +51,8 @@ pub struct SceneMemory<R: Precision> {
     pub faces: Buffer<[u32; 3]>,
     pub vertices: Placing<R>,
     has_vertices: bool,
+    /// Pairs of bodies that are left out, as kernels read them; empty without such.
+    left_out: Buffer<u32>,
     /// Meshes and poses, from the first query of instances on.
     pub instances: Option<Instances>,
     /// Edges, owned features, and candidates of features; empty before the first query of them.
@@ -79,6 +81,7 @@ impl<R: Precision> SceneMemory<R> {
             faces: of_faces.upload(&layout.faces)?,
             vertices: Placing::new(&device.of(purpose::VERTICES), layout, bodies, parts.has_ends)?,
             has_vertices: parts.has_vertices,
+            left_out: device.of(purpose::LEFT_OUT).upload(&parts.layout.left_out)?,
             instances: None,
             features: Features::none(&device)?,
             pairs: List::new(&device, "candidate triangle pairs", counter::PAIRS, 0)?,
@@ -156,6 +159,7 @@ impl<R: Precision> SceneMemory<R> {
             frames: self.vertices.frames(query.is_at_rest()),
             faces: self.faces.span(),
             records: query.records(),
+            filters: FilterArgs { left_out: self.left_out.span(), ..query.filters() },
             is_submitted: self.is_submitting,
             instances: self.instances.as_ref(),
         };

@@ -166,6 +166,9 @@ arguments! {
         nodes: Span<NodeFilter>,
         /// The bodies; empty if all are in all groups and meet all.
         bodies: Span<BodyRecord>,
+        /// The pairs of bodies that are left out; empty without such. Word `b` is the place of the
+        /// first of the larger numbers in pairs of body `b`, ascending, up to word `b + 1`.
+        left_out: Span<u32>,
     }
     /// `place`: positions of the vertices of moved bodies.
     PlaceArgs<R: Real> {

@@ -6,10 +6,14 @@
 //! nodes whose triangles all name the same hub have no pair. So `n` faces round one hub cost `n`
 //! tests, not `n²`. A query that keeps adjacent pairs has no hubs.
 
-use crate::abi::{BodyRecord, EVERY, FilterArgs, MIXED, NodeFilter, SELF_CONTACT};
+use crate::abi::{BodyRecord, EVERY, FilterArgs, MIXED, NodeFilter, SELF_CONTACT, Span};
 use crate::exec::Lane;
 
 impl FilterArgs {
+    /// No filters.
+    pub const NONE: FilterArgs =
+        FilterArgs { nodes: Span::EMPTY, bodies: Span::EMPTY, left_out: Span::EMPTY };
+
     /// The filter of a node; that of a body tested against itself if the scene has no filters.
     #[inline(always)]
     pub fn of<L: Lane>(&self, lane: &L, node: u32) -> NodeFilter {
@@ -22,9 +26,9 @@ impl FilterArgs {
 
     /// Whether triangles below one node may meet triangles below the other. Two bodies must share
     /// an environment, or one is in every environment. Each must be in a group that the other
-    /// meets. A body meets itself by its own flag, for any groups. A refusal for two nodes
-    /// holds for all below them: environments are ranges of leaves, and a hub of a node is one of
-    /// all below it.
+    /// meets, and the list of pairs that are left out must not have them. A body meets itself by
+    /// its own flag, for any groups. A refusal for two nodes holds for all below them: environments
+    /// are ranges of leaves, and a hub of a node is one of all below it.
     #[inline(always)]
     pub fn allows<L: Lane>(&self, lane: &L, p: NodeFilter, q: NodeFilter) -> bool {
         if self.nodes.is_empty() {
@@ -40,10 +44,17 @@ impl FilterArgs {
         }
         let shared = (p.first() <= q.last) & (q.first() <= p.last);
         let together = shared | (p.last == EVERY) | (q.last == EVERY);
-        if !together | mixed | self.bodies.is_empty() {
+        if !together | mixed | (self.bodies.is_empty() & self.left_out.is_empty()) {
             return together;
         }
-        let [p, q] = [p, q].map(|filter| lane.read(self.bodies, filter.who & NodeFilter::NUMBER));
+        let [p, q] = [p, q].map(|filter| filter.who & NodeFilter::NUMBER);
+        if !self.left_out.is_empty() && is_left_out(p, q, |i| lane.read(self.left_out, i)) {
+            return false;
+        }
+        if self.bodies.is_empty() {
+            return true;
+        }
+        let [p, q] = [p, q].map(|body| lane.read(self.bodies, body));
         (p.group & q.mask != 0) & (q.group & p.mask != 0)
     }
 }
@@ -80,6 +91,24 @@ impl NodeFilter {
         let last = if self.last > other.last { self.last } else { other.last };
         NodeFilter { who: MIXED | if p < q { p } else { q }, last, hub, pad: 0 }
     }
+}
+
+/// Whether the list of pairs that are left out has two different bodies: see
+/// [`FilterArgs::left_out`]. `word` returns a word of the list. Cost: a binary search in the pairs
+/// of the smaller number.
+#[inline(always)]
+pub fn is_left_out(p: u32, q: u32, word: impl Fn(u32) -> u32) -> bool {
+    let (body, other) = if p < q { (p, q) } else { (q, p) };
+    let (mut low, mut high) = (word(body), word(body + 1));
+    while low < high {
+        let middle = low + (high - low) / 2;
+        let listed = word(middle);
+        if listed == other {
+            return true;
+        }
+        if listed < other { low = middle + 1 } else { high = middle }
+    }
+    false
 }
 
 /// The number of the group that has item `i`, of `count` ≥ 1 contiguous groups: the last that

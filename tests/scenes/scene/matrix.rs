@@ -205,11 +205,20 @@ fn what_is_left_out_is_told() {
         of_query.extend((motion == QueryKind::Distance).then_some("pairs within a body"));
         of_query.extend((motion == QueryKind::Earliest).then_some("lists of contacts"));
         for (scene, own) in [
-            (&rigid, &["fixed tree", "groups in the walk"][..]),
+            (&rigid, &["fixed tree", "groups in the walk", "list of pairs in the walk"][..]),
             (&one, &["fixed tree", "poses", "filters of pairs", "placing of vertices"]),
-            (&two, &["fixed tree", "poses", "groups in the walk", "placing of vertices"]),
-            (&pair, &["poses", "groups in the walk"]),
-            (&worlds, &["fixed tree", "groups in the walk"]),
+            (
+                &two,
+                &[
+                    "fixed tree",
+                    "poses",
+                    "groups in the walk",
+                    "list of pairs in the walk",
+                    "placing of vertices",
+                ],
+            ),
+            (&pair, &["poses", "groups in the walk", "list of pairs in the walk"]),
+            (&worlds, &["fixed tree", "groups in the walk", "list of pairs in the walk"]),
         ] {
             if !asks(motion, scene.bodies().len()) {
                 assert_eq!(left(scene, motion), ["everything"]);

@@ -69,7 +69,7 @@ fn run(device: &Device, nodes: &[Node<Aabb>], rounds: Option<u32>) -> Left {
     let counters = counts.counters();
     let to = PairArgs {
         nodes: nodes.span(),
-        filters: FilterArgs { nodes: Span::EMPTY, bodies: Span::EMPTY },
+        filters: FilterArgs::NONE,
         faces: Span::EMPTY,
         pairs: counters.output(pairs.span(), counter::PAIRS),
         ends: counters.output(ends.span(), counter::ENDS),

@@ -32,7 +32,6 @@ pub struct Groups {
     /// Filters of the bodies below each node, and of each body of the scene.
     filters: Buffer<NodeFilter>,
     whose: Buffer<NodeFilter>,
-    has_groups: bool,
     has_fixed: bool,
 }
 
@@ -63,7 +62,6 @@ impl Groups {
             nodes: boxes.upload(&vec![nothing; count])?,
             filters,
             whose: of_filters.upload(&whose)?,
-            has_groups: layout.has_groups(),
             has_fixed: false,
         })
     }
@@ -178,10 +176,9 @@ impl Groups {
         self.whose.span()
     }
 
-    /// Returns the filters of pairs.
-    pub fn filters(&self, records: Span<BodyRecord>) -> FilterArgs {
-        let bodies = if self.has_groups { records } else { Span::EMPTY };
-        FilterArgs { nodes: self.filters.span(), bodies }
+    /// Returns the filters of pairs; `of_bodies` has no nodes.
+    pub fn filters(&self, of_bodies: FilterArgs) -> FilterArgs {
+        FilterArgs { nodes: self.filters.span(), ..of_bodies }
     }
 
     /// Returns the number of levels of moving and, if there are any, of fixed bodies.

@@ -86,7 +86,7 @@ impl BodyGroups {
         counters: Counters,
     ) -> Result<Output<Pair>, Error> {
         let groups = &self.groups;
-        let (filters, to) = (groups.filters(given.records), groups.moving());
+        let (filters, to) = (groups.filters(given.filters), groups.moving());
         let tile_pairs = self.group_pairs.output(counters);
         let pairs = self.body_pairs.output(counters);
         let (top, tops, shift) = groups.top();
@@ -263,7 +263,7 @@ mod tests {
     use crate::query::Query;
     use crate::samples::soup;
     use crate::scene::{Body, Motion, Pose};
-    use nearmiss_kernels::abi::Positions;
+    use nearmiss_kernels::abi::{FilterArgs, Positions};
 
     /// Returns the checker's verdict on the boxes of 80 bodies, some fixed, after a fault.
     fn checked(fault: impl Fn(&mut BodyGroups)) -> Result<(), Error> {
@@ -281,6 +281,7 @@ mod tests {
             frames: Positions { still: Span::EMPTY, moving: Span::EMPTY, turns: Span::EMPTY },
             faces: Span::EMPTY,
             records: Span::EMPTY,
+            filters: FilterArgs::NONE,
             is_submitted: false,
             instances: Some(&instances),
         };

@@ -47,6 +47,7 @@ fn checked_of(bodies: &[Body], fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), E
         frames: abi::Positions { still: points.span(), moving: Span::EMPTY, turns: Span::EMPTY },
         faces: faces.span(),
         records: records.span(),
+        filters: FilterArgs::NONE,
         is_submitted: false,
         instances: None,
     };

@@ -19,8 +19,8 @@ use crate::pipeline::precision::Precision;
 use crate::pipeline::{launch, purpose};
 use fixed_margin::FixedMargin;
 use nearmiss_kernels::abi::{
-    BodyRecord, FilterArgs, FitTilesArgs, NONE, Node, NodeFilter, Pair, RefitTilesArgs, Span,
-    TileFiltersArgs, TilePairsArgs, TileTrianglesArgs, TreeBody, counter,
+    FilterArgs, FitTilesArgs, NONE, Node, NodeFilter, Pair, RefitTilesArgs, Span, TileFiltersArgs,
+    TilePairsArgs, TileTrianglesArgs, TreeBody, counter,
 };
 use nearmiss_kernels::bvh::tiles::{self, Levels, Part, TILE};
 use nearmiss_kernels::entry::{self, Entry, Kernels};
@@ -66,7 +66,6 @@ pub struct Tiles<V> {
     /// them.
     hubs: Buffer<u32>,
     rims: Buffer<Node<V>>,
-    has_groups: bool,
     tile_pairs: List<Pair>,
     /// Cost of each tile, if work is divided.
     work: Option<Buffer<u64>>,
@@ -110,7 +109,6 @@ impl<V: Kernels> Tiles<V> {
             whose: filters.upload(&whose)?,
             hubs: device.of(purpose::RIMS).upload(&layout.rims)?,
             rims,
-            has_groups: layout.has_groups(),
             tile_pairs: List::new(device, "pairs of tiles", counter::TILE_PAIRS, room)?,
             work: None,
             levels,
@@ -192,10 +190,9 @@ impl<V: Kernels> Tiles<V> {
         self.levels.part(0, MOVING, self.triangles[MOVING]).count
     }
 
-    /// Returns the filters of the pairs.
-    fn filters(&self, records: Span<BodyRecord>) -> FilterArgs {
-        let bodies = if self.has_groups { records } else { Span::EMPTY };
-        FilterArgs { nodes: self.filters.span(), bodies }
+    /// Returns the filters of the pairs; `of_bodies` has no nodes.
+    fn filters(&self, of_bodies: FilterArgs) -> FilterArgs {
+        FilterArgs { nodes: self.filters.span(), ..of_bodies }
     }
 }
 
@@ -287,7 +284,7 @@ impl<R: Precision, V: Kernels> CandidateSearch<R> for Tiles<V> {
             Which::Sample => (SAMPLE, Span::EMPTY),
             Which::Before(time) => (1, time),
         };
-        let (device, filters) = (given.device, self.filters(given.records));
+        let (device, filters) = (given.device, self.filters(given.filters));
         let own = share.of(self.tiles());
         if let Some(work) = &mut self.work {
             work.clear()?;

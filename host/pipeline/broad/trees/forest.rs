@@ -15,7 +15,7 @@ use crate::pipeline::precision::Precision;
 use crate::pipeline::{launch, purpose};
 use crate::query::Refit;
 use nearmiss_kernels::abi::{
-    BodyRecord, FilterArgs, GraftArgs, Link, Node, NodeFilter, ROOT, Span, TraverseFlags, TreeBody, grafted,
+    FilterArgs, GraftArgs, Link, Node, NodeFilter, ROOT, TraverseFlags, TreeBody, grafted,
 };
 use nearmiss_kernels::bvh;
 use nearmiss_kernels::entry::{self, Kernels};
@@ -26,7 +26,6 @@ pub struct Forest<V> {
     pub tree: Tree,
     /// Volumes of both trees.
     pub volumes: Volumes<V>,
-    has_groups: bool,
     fixed: Option<Fixed>,
 }
 
@@ -60,7 +59,7 @@ impl<V: Kernels> Forest<V> {
             refit,
             margin,
         });
-        Ok(Forest { tree, volumes, has_groups: layout.has_groups(), fixed })
+        Ok(Forest { tree, volumes, fixed })
     }
 
     /// Builds the moving tree and, the first time, the fixed one.
@@ -110,10 +109,9 @@ impl<V: Kernels> Forest<V> {
         true
     }
 
-    /// Returns the filters of a walk's pairs, for bodies with these records.
-    pub fn filters(&self, records: Span<BodyRecord>) -> FilterArgs {
-        let bodies = if self.has_groups { records } else { Span::EMPTY };
-        FilterArgs { nodes: self.tree.filters.span(), bodies }
+    /// Returns the filters of a walk's pairs; `of_bodies` has no nodes.
+    pub fn filters(&self, of_bodies: FilterArgs) -> FilterArgs {
+        FilterArgs { nodes: self.tree.filters.span(), ..of_bodies }
     }
 
     /// Returns the flags that a walk over these trees needs.

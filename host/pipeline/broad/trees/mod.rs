@@ -73,7 +73,7 @@ impl<R: Precision, V: Kernels> CandidateSearch<R> for Trees<R, V> {
             forest: &self.forest,
             frames: given.frames,
             faces: given.faces,
-            records: given.records,
+            filters: given.filters,
             pairs: candidates.pairs,
             ends: Output::EMPTY,
             counters: candidates.counters,

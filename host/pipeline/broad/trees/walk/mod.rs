@@ -17,9 +17,7 @@ use crate::pipeline::precision::Precision;
 use crate::query::{Query, Traversal};
 use front::Front;
 use nearest::NearestFirst;
-use nearmiss_kernels::abi::{
-    BodyRecord, Counters, FilterArgs, Output, Pair, PairArgs, Positions, Span, TraverseFlags,
-};
+use nearmiss_kernels::abi::{Counters, FilterArgs, Output, Pair, PairArgs, Positions, Span, TraverseFlags};
 use nearmiss_kernels::entry::{Entry, Kernels};
 use per_leaf::PerLeaf;
 use queue::Queue;
@@ -35,8 +33,8 @@ pub struct WalkContext<'a, R: Precision, V> {
     pub frames: Positions<R>,
     /// Vertex indices of every triangle.
     pub faces: Span<[u32; 3]>,
-    /// Records of the bodies for the kernels.
-    pub records: Span<BodyRecord>,
+    /// Filters of the bodies, without nodes.
+    pub filters: FilterArgs,
     /// Out: candidate triangle pairs.
     pub pairs: Output<Pair>,
     /// Out, with [`TraverseFlags::FRONT`]: pairs of nodes at which the descent ended.
@@ -50,7 +48,7 @@ pub struct WalkContext<'a, R: Precision, V> {
 impl<R: Precision, V: Kernels> WalkContext<'_, R, V> {
     /// Returns the filters of the pairs.
     fn filters(&self) -> FilterArgs {
-        self.forest.filters(self.records)
+        self.forest.filters(self.filters)
     }
 
     /// Returns the arguments of a walk by pairs of nodes, with queues of `local` units on chip.
