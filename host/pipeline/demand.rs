@@ -231,7 +231,7 @@ mod tests {
     use super::*;
     use crate::device::Backend;
     use crate::samples::soup;
-    use crate::scene::{CollisionFilter, Scene};
+    use crate::scene::{BodyId, CollisionFilter, Scene};
     use crate::{Body, Detector};
 
     fn points(bodies: &[Body]) -> Vec<[f64; 3]> {
@@ -276,11 +276,14 @@ mod tests {
         let layout = Layout::new(&bodies, Query::near(1.0).kind());
         let tested = |a, b| layout.tests(a, b);
         assert!(!tested(0, 0) && !tested(0, 1) && tested(0, 2) && tested(1, 2));
+        let listed = layout.clone().without(&[[BodyId(0), BodyId(2)]]);
+        assert!(!listed.tests(0, 2) && !listed.tests(2, 0) && listed.tests(1, 2));
         let whole = least(&layout, &points(&bodies), 1e3);
         // Each fixed body has 90 vertices, 30 faces and 90 edges; the other has 120, 40 and 120.
         let of_two = 90 * 40 + 120 * 30 + 90 * 120;
         let own = if tested(2, 2) { 120 * 40 + 120 * 119 / 2 } else { 0 };
         let common = if tested(2, 2) { adjacent(&layout, 2) } else { 0 };
         assert_eq!(whole, 2 * of_two + own - common);
+        assert_eq!(least(&listed, &points(&bodies), 1e3), of_two + own - common);
     }
 }

@@ -5,7 +5,7 @@ use crate::asked::{Asked, Does};
 use crate::device::Device;
 use crate::errors::raised;
 use crate::geometry::Geometry;
-use crate::key::{Key, body_of};
+use crate::key::{self, Key, body_of, numbers, pairs_of};
 use crate::on_device::DeviceAnswer;
 use crate::pairs::{Curves, PairGeometry};
 use crate::pose::Pose;
@@ -325,6 +325,32 @@ impl Detector {
     fn replace(&self, py: Python<'_>, #[pyo3(from_py_with = body_of)] body: Key, by: &Body) -> PyResult<()> {
         let id = self.body(py, body)?;
         self.run(py, Does::Edits, |detector| detector.replace(id, by.body.clone()))
+    }
+
+    /// Replace the list of pairs of bodies that are not tested against each other, by any query.
+    ///
+    /// - `pairs`: [(a, b), ...], numbers or names of bodies, as the links of a robot that share a joint.
+    ///   Order and repeats do not matter; [] leaves out none.
+    ///
+    /// A body that is removed takes its pairs with it, one that is replaced keeps them. Another list
+    /// ends the preparation of submissions, and the next query builds tiles or trees.
+    /// Raises InvalidArgumentError for a body that does not exist, and for a body with itself: then the
+    /// list is as before.
+    fn leave_out(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = pairs_of)] pairs: Vec<[Key; 2]>,
+    ) -> PyResult<()> {
+        self.run(py, Does::Edits, |detector| {
+            let list = key::pairs(detector.scene(), &pairs)?;
+            detector.leave_out(&list)
+        })
+    }
+
+    /// Pairs of bodies that are left out: the smaller number first, ascending.
+    #[getter]
+    fn left_out(&self, py: Python<'_>) -> PyResult<Vec<(usize, usize)>> {
+        self.look(py, |detector| numbers(detector.left_out()))
     }
 
     /// Return the place of a body at the start and the end of its step, copied to the host.

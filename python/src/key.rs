@@ -4,6 +4,7 @@ use crate::errors::choice;
 use nearmiss::error::Error;
 use nearmiss::scene::{BodyId, Scene};
 use pyo3::prelude::*;
+use pyo3::types::PyString;
 
 /// How Python names a body.
 pub enum Key {
@@ -47,6 +48,39 @@ pub fn bodies(scene: &Scene, keys: &[Key]) -> Result<Vec<BodyId>, Error> {
         Key::Name(name) => named.next().ok_or_else(|| missing(name)),
     };
     keys.iter().map(of).collect()
+}
+
+/// The pairs of bodies of an argument `pairs`.
+pub fn pairs_of(given: &Bound<'_, PyAny>) -> PyResult<Vec<[Key; 2]>> {
+    let mut pairs = Vec::new();
+    let wrong = |got: &Bound<'_, PyAny>| -> PyResult<PyErr> {
+        let what = format!("pairs must be a list of pairs of bodies, got {}", got.repr()?);
+        Ok(choice(what, "use [(a, b), ...] with numbers or names"))
+    };
+    let Ok(items) = given.try_iter() else { return Err(wrong(given)?) };
+    for item in items {
+        let item = item?;
+        if item.is_instance_of::<PyString>() {
+            return Err(wrong(&item)?);
+        }
+        let Ok([a, b]) = item.extract::<[Bound<'_, PyAny>; 2]>() else { return Err(wrong(&item)?) };
+        pairs.push([body_of(&a)?, body_of(&b)?]);
+    }
+    Ok(pairs)
+}
+
+/// The bodies of pairs of keys.
+///
+/// # Errors
+/// As of [`bodies`].
+pub fn pairs(scene: &Scene, pairs: &[[Key; 2]]) -> Result<Vec<[BodyId; 2]>, Error> {
+    let all = bodies(scene, pairs.as_flattened())?;
+    Ok(all.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect())
+}
+
+/// Pairs of bodies, as Python has them.
+pub fn numbers(pairs: &[[BodyId; 2]]) -> Vec<(usize, usize)> {
+    pairs.iter().map(|[a, b]| (a.index(), b.index())).collect()
 }
 
 fn missing(body: &impl std::fmt::Display) -> Error {

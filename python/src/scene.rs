@@ -2,7 +2,7 @@
 
 use crate::errors::{choice, integer, one_of, optional, raised};
 use crate::host::{Most, faces, points, positions, rows};
-use crate::key::{Key, bodies, body_of};
+use crate::key::{self, Key, bodies, body_of, numbers, pairs_of};
 use crate::matrix::pose_of;
 use crate::pose::Pose;
 use crate::query::{Remade, remade};
@@ -180,7 +180,7 @@ impl Scene {
         if self.taken {
             return Err(choice(
                 format!("cannot {change} a scene after a detector has copied it"),
-                "add, remove or replace bodies of the detector, or make another Scene",
+                "change the detector in the same way, or make another Scene",
             ));
         }
         Ok(())
@@ -216,6 +216,26 @@ impl Scene {
             self.scene.remove(id);
         }
         Ok(())
+    }
+
+    /// Replace the list of pairs of bodies that are not tested against each other, by any query.
+    ///
+    /// - `pairs`: [(a, b), ...], numbers or names of bodies, as the links of a robot that share a joint.
+    ///   Order and repeats do not matter; [] leaves out none.
+    ///
+    /// A body that is removed takes its pairs with it.
+    /// Raises InvalidArgumentError for a body that does not exist, and for a body with itself: then the
+    /// list is as before.
+    fn leave_out(&mut self, #[pyo3(from_py_with = pairs_of)] pairs: Vec<[Key; 2]>) -> PyResult<()> {
+        self.is_free("leave out pairs of")?;
+        let list = key::pairs(&self.scene, &pairs).map_err(raised)?;
+        self.scene.leave_out(&list).map_err(raised)
+    }
+
+    /// Pairs of bodies that are left out: the smaller number first, ascending.
+    #[getter]
+    fn left_out(&self) -> Vec<(usize, usize)> {
+        numbers(self.scene.left_out())
     }
 
     /// Return the number of the one body with that name: scene[name] is the same.

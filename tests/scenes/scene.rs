@@ -5,6 +5,7 @@ mod cost;
 mod edits;
 mod empty;
 mod extremes;
+mod left_out;
 mod matrix;
 mod pairwise;
 mod plan;

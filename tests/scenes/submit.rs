@@ -2,6 +2,7 @@
 
 mod faults;
 mod inputs;
+mod left_out;
 mod refusals;
 mod schedules;
 

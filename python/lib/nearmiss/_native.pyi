@@ -282,6 +282,21 @@ class Scene:
     def remove(self, body: Key) -> None:
         """Remove a body, by number or name. The next body that is added may take its number."""
 
+    def leave_out(self, pairs: Iterable[tuple[Key, Key]]) -> None:
+        """Replace the list of pairs of bodies that are not tested against each other, by any query.
+
+        - `pairs`: [(a, b), ...], numbers or names of bodies, as the links of a robot that share a joint.
+          Order and repeats do not matter; [] leaves out none.
+
+        A body that is removed takes its pairs with it.
+        Raises InvalidArgumentError for a body that does not exist, and for a body with itself: then the
+        list is as before.
+        """
+
+    @property
+    def left_out(self) -> list[tuple[int, int]]:
+        """Pairs of bodies that are left out: the smaller number first, ascending."""
+
     def id(self, name: str) -> int:
         """Return the number of the one body with that name: scene[name] is the same.
 
@@ -1015,6 +1030,22 @@ class Detector:
 
     def replace(self, body: Key, by: Body) -> None:
         """Replace a body, by number or name."""
+
+    def leave_out(self, pairs: Iterable[tuple[Key, Key]]) -> None:
+        """Replace the list of pairs of bodies that are not tested against each other, by any query.
+
+        - `pairs`: [(a, b), ...], numbers or names of bodies, as the links of a robot that share a joint.
+          Order and repeats do not matter; [] leaves out none.
+
+        A body that is removed takes its pairs with it, one that is replaced keeps them. Another list
+        ends the preparation of submissions, and the next query builds tiles or trees.
+        Raises InvalidArgumentError for a body that does not exist, and for a body with itself: then the
+        list is as before.
+        """
+
+    @property
+    def left_out(self) -> list[tuple[int, int]]:
+        """Pairs of bodies that are left out: the smaller number first, ascending."""
 
     def download_positions(self, body: Key) -> tuple[NDArray[Any], NDArray[Any]] | tuple[Pose, Pose]:
         """Return the place of a body at the start and the end of its step, copied to the host.

@@ -23,7 +23,7 @@ fn meshes(rng: &mut SmallRng, size: f64) -> Vec<Mesh> {
     ]
 }
 
-/// Bodies about a place, fixed ones among them, in environments and groups.
+/// Bodies about a place, fixed ones among them, in environments and groups, some pairs left out.
 fn scene(rng: &mut SmallRng, (size, place, range): World, count: usize, filters: bool) -> Scene {
     let meshes = meshes(rng, size);
     let mut scene = Scene::new();
@@ -45,6 +45,11 @@ fn scene(rng: &mut SmallRng, (size, place, range): World, count: usize, filters:
             Body::rigid(mesh)
         };
         scene.add(body.with_filter(filter));
+    }
+    if filters {
+        let ids: Vec<BodyId> = scene.ids().collect();
+        let pairs = (0..count * count / 4).map(|_| [(); 2].map(|()| ids[rng.random_range(0..count)]));
+        scene.leave_out(&pairs.filter(|[a, b]| a != b).collect::<Vec<_>>()).expect("bodies");
     }
     scene
 }
