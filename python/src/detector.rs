@@ -5,7 +5,7 @@ use crate::asked::{Asked, Does};
 use crate::device::Device;
 use crate::errors::raised;
 use crate::geometry::Geometry;
-use crate::key::{self, Key, body_of, numbers, pairs_of};
+use crate::key::{self, Key, Pairs, body_of, numbers, pairs_of};
 use crate::on_device::DeviceAnswer;
 use crate::pairs::{Curves, PairGeometry};
 use crate::pose::Pose;
@@ -63,17 +63,7 @@ impl Detector {
     /// not exist and motions that do not fit: then nothing has moved. Positions on a GPU are checked
     /// by the next query.
     fn update(&self, py: Python<'_>, inputs: &Bound<'_, PyAny>) -> PyResult<()> {
-        let mut frame = self.frame_of(py, inputs)?;
-        let held = std::mem::take(&mut frame.held);
-        let given = frame.inputs();
-        let (done, unread) = self.work(py, |one| {
-            one.count(Does::Moves);
-            let done = one.detector.update(&given);
-            let unread = one.read(held, false);
-            (done, unread)
-        })?;
-        drop(unread);
-        done.map_err(raised)
+        self.moved(py, inputs)
     }
 
     /// Move many rigid bodies at once, by arrays of poses with a row a body.
@@ -234,21 +224,7 @@ impl Detector {
     /// - `queries`: a list of queries, answered by every submission. No two may differ in numbers
     ///   alone.
     fn prepare(&self, py: Python<'_>, inputs: &Bound<'_, PyAny>, queries: &Bound<'_, PyAny>) -> PyResult<()> {
-        let queries = queries_of(queries)?;
-        let frame = self.frame_of(py, inputs)?;
-        let given = frame.on_device()?;
-        let held = frame.held;
-        let (done, unread) = self.work(py, |one| {
-            one.count(Does::Moves);
-            let done = one.detector.prepare(&given, &queries);
-            // A refusal may leave it as it was prepared before.
-            let as_before = done.is_err() && one.detector.is_prepared();
-            let unheld = if as_before { held } else { std::mem::replace(&mut one.held, held) };
-            let unread = one.read(unheld, done.is_ok());
-            (done, unread)
-        })?;
-        drop(unread);
-        done.map_err(raised)
+        self.prepared(py, inputs, &queries_of(queries)?)
     }
 
     /// Whether `submit` may be called, and a graph that recorded it launched again.
@@ -336,12 +312,8 @@ impl Detector {
     /// ends the preparation of submissions, and the next query builds tiles or trees.
     /// Raises InvalidArgumentError for a body that does not exist, and for a body with itself: then the
     /// list is as before.
-    fn leave_out(
-        &self,
-        py: Python<'_>,
-        #[pyo3(from_py_with = pairs_of)] pairs: Vec<[Key; 2]>,
-    ) -> PyResult<()> {
-        self.run(py, Does::Edits, |detector| {
+    fn leave_out(&self, py: Python<'_>, #[pyo3(from_py_with = pairs_of)] pairs: Pairs) -> PyResult<()> {
+        self.run(py, Does::Queries, |detector| {
             let list = key::pairs(detector.scene(), &pairs)?;
             detector.leave_out(&list)
         })

@@ -50,8 +50,11 @@ pub fn bodies(scene: &Scene, keys: &[Key]) -> Result<Vec<BodyId>, Error> {
     keys.iter().map(of).collect()
 }
 
+/// Pairs of bodies, as Python names them.
+pub type Pairs = Vec<[Key; 2]>;
+
 /// The pairs of bodies of an argument `pairs`.
-pub fn pairs_of(given: &Bound<'_, PyAny>) -> PyResult<Vec<[Key; 2]>> {
+pub fn pairs_of(given: &Bound<'_, PyAny>) -> PyResult<Pairs> {
     let mut pairs = Vec::new();
     let wrong = |got: &Bound<'_, PyAny>| -> PyResult<PyErr> {
         let what = format!("pairs must be a list of pairs of bodies, got {}", got.repr()?);

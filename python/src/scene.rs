@@ -2,7 +2,7 @@
 
 use crate::errors::{choice, integer, one_of, optional, raised};
 use crate::host::{Most, faces, points, positions, rows};
-use crate::key::{self, Key, bodies, body_of, numbers, pairs_of};
+use crate::key::{self, Key, Pairs, bodies, body_of, numbers, pairs_of};
 use crate::matrix::pose_of;
 use crate::pose::Pose;
 use crate::query::{Remade, remade};
@@ -226,7 +226,7 @@ impl Scene {
     /// A body that is removed takes its pairs with it.
     /// Raises InvalidArgumentError for a body that does not exist, and for a body with itself: then the
     /// list is as before.
-    fn leave_out(&mut self, #[pyo3(from_py_with = pairs_of)] pairs: Vec<[Key; 2]>) -> PyResult<()> {
+    fn leave_out(&mut self, #[pyo3(from_py_with = pairs_of)] pairs: Pairs) -> PyResult<()> {
         self.is_free("leave out pairs of")?;
         let list = key::pairs(&self.scene, &pairs).map_err(raised)?;
         self.scene.leave_out(&list).map_err(raised)

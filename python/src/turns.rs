@@ -128,6 +128,44 @@ impl Detector {
         Frame::of(named.map_err(raised)?.into_iter().zip(places).collect(), &self.device.get().device)
     }
 
+    /// Moves bodies.
+    pub fn moved(&self, py: Python<'_>, inputs: &Bound<'_, PyAny>) -> PyResult<()> {
+        let mut frame = self.frame_of(py, inputs)?;
+        let held = std::mem::take(&mut frame.held);
+        let given = frame.inputs();
+        let (done, unread) = self.work(py, |one| {
+            one.count(Does::Moves);
+            let done = one.detector.update(&given);
+            let unread = one.read(held, false);
+            (done, unread)
+        })?;
+        drop(unread);
+        done.map_err(raised)
+    }
+
+    /// Prepares submissions of queries.
+    pub fn prepared(
+        &self,
+        py: Python<'_>,
+        inputs: &Bound<'_, PyAny>,
+        queries: &[nearmiss::Query],
+    ) -> PyResult<()> {
+        let frame = self.frame_of(py, inputs)?;
+        let given = frame.on_device()?;
+        let held = frame.held;
+        let (done, unread) = self.work(py, |one| {
+            one.count(Does::Moves);
+            let done = one.detector.prepare(&given, queries);
+            // A refusal may leave it as it was prepared before.
+            let as_before = done.is_err() && one.detector.is_prepared();
+            let unheld = if as_before { held } else { std::mem::replace(&mut one.held, held) };
+            let unread = one.read(unheld, done.is_ok());
+            (done, unread)
+        })?;
+        drop(unread);
+        done.map_err(raised)
+    }
+
     /// The body of a key.
     pub fn body(&self, py: Python<'_>, key: Key) -> PyResult<BodyId> {
         let found = self.look(py, |detector| bodies(detector.scene(), &[key]))?;

@@ -2,6 +2,7 @@
 
 mod answers;
 mod interrupted;
+mod left_out;
 mod one_detector;
 mod poses;
 mod refusals;

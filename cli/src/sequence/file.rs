@@ -1,4 +1,4 @@
-//! Files of scenes: TOML, a table a body.
+//! Files of scenes: TOML, a table a body, and pairs of bodies that are left out.
 
 use super::poses::{PathName, PoseTable, Poses};
 use nearmiss::error::Error;
@@ -25,11 +25,22 @@ pub struct Described {
     pub called: String,
 }
 
+/// A scene as a file describes it.
+#[derive(Default)]
+pub struct SceneFile {
+    /// Bodies.
+    pub bodies: Vec<Described>,
+    /// Pairs of them that are left out, by their places.
+    pub left_out: Vec<[usize; 2]>,
+}
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Whole {
     #[serde(default)]
     body: Vec<Spanned<Table>>,
+    #[serde(default)]
+    leave_out: Vec<Spanned<[String; 2]>>,
 }
 
 #[derive(Deserialize)]
@@ -71,7 +82,7 @@ pub fn wrong(file: &Path, what: impl Into<String>, advice: impl Into<String>) ->
 ///
 /// # Errors
 /// [`Error::Input`], naming the file, the body, the key and the value.
-pub fn read(path: &Path) -> Result<Vec<Described>, Error> {
+pub fn read(path: &Path) -> Result<SceneFile, Error> {
     let text = text(path)?;
     let ends: Vec<usize> = text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(at, _)| at).collect();
     let line = |at: usize| 1 + ends.partition_point(|end| *end < at);
@@ -93,7 +104,31 @@ pub fn read(path: &Path) -> Result<Vec<Described>, Error> {
         }
         all.push(body);
     }
-    Ok(all)
+    let pairs = whole.leave_out.into_iter();
+    let left_out = pairs.map(|pair| pair_of(path, line(pair.span().start), pair.get_ref(), &names));
+    Ok(SceneFile { left_out: left_out.collect::<Result<_, _>>()?, bodies: all })
+}
+
+/// A pair of `leave_out`, by places.
+fn pair_of(
+    path: &Path,
+    line: usize,
+    pair: &[String; 2],
+    names: &HashMap<String, usize>,
+) -> Result<[usize; 2], Error> {
+    let [a, b] = pair;
+    let bad = |what: String, advice: &str| {
+        wrong(path, format!("line {line}: `leave_out` has the pair [{a:?}, {b:?}], and {what}"), advice)
+    };
+    let of = |name: &String| {
+        let place = names.get(name).copied();
+        place.ok_or_else(|| bad(format!("no body is named {name:?}"), "use the `name` of a body"))
+    };
+    let places = [of(a)?, of(b)?];
+    if places[0] == places[1] {
+        return Err(bad("that is one body".into(), "set its `self_collision` to false"));
+    }
+    Ok(places)
 }
 
 /// A regular file's text.

@@ -10,7 +10,7 @@ use crate::args::DetectArgs;
 use crate::meshes::Reader;
 use crate::output::say;
 use crate::rows::numbered;
-use file::{Described, wrong};
+use file::{Described, SceneFile, wrong};
 use nearmiss::error::Error;
 use nearmiss::memory;
 use nearmiss::mesh::{Body, Positions};
@@ -63,6 +63,8 @@ pub struct Sequence {
     tracks: Vec<Track>,
     /// The faces of each file behind its triangles.
     pub polygons: Vec<Polygons>,
+    /// Pairs of bodies that are left out, by their places.
+    left_out: Vec<[usize; 2]>,
     /// How many frames there are: at least one.
     pub frames: usize,
     /// The names of the bodies in rows: those of a scene file, or numbers of several.
@@ -80,8 +82,8 @@ pub fn files(args: &DetectArgs) -> HashSet<PathBuf> {
     let named: Vec<&PathBuf> = args.meshes.iter().chain(&args.query.with).collect();
     let scenes = named.iter().filter(|path| is_scene(path));
     let meshes = scenes.flat_map(|path| {
-        let bodies = file::read(path).unwrap_or_default();
-        bodies.into_iter().flat_map(|body| body.meshes).map(|mesh| folder_of(path).join(mesh))
+        let scene = file::read(path).unwrap_or_default();
+        scene.bodies.into_iter().flat_map(|body| body.meshes).map(|mesh| folder_of(path).join(mesh))
     });
     meshes.chain(named.iter().map(|path| path.to_path_buf())).collect()
 }
@@ -128,7 +130,8 @@ impl Sequence {
 
     fn new(told: Vec<Told>, names: Option<Vec<String>>) -> Sequence {
         let frames = told.iter().map(|one| one.track.frames()).max().unwrap_or(1);
-        let all = Sequence { bodies: Vec::new(), tracks: Vec::new(), polygons: Vec::new(), frames, names };
+        let (bodies, tracks, polygons, left_out) = Default::default();
+        let all = Sequence { bodies, tracks, polygons, left_out, frames, names };
         told.into_iter().fold(all, |mut all, Told { body, track, polygons }| {
             all.bodies.push(body);
             all.tracks.push(track);
@@ -139,7 +142,7 @@ impl Sequence {
 
     /// Reads a scene and all of its meshes.
     fn read(path: &Path, reader: &mut Reader) -> Result<Sequence, Error> {
-        let described = file::read(path)?;
+        let SceneFile { bodies: described, left_out } = file::read(path)?;
         let counts = |body: &Described| body.meshes.len().max(body.poses.frames.len());
         let longest =
             described.iter().max_by_key(|body| counts(body)).map(|body| (counts(body), &body.called));
@@ -155,7 +158,8 @@ impl Sequence {
         for body in &described {
             told.push(of_table((path, folder), body, &mut read, reader)?);
         }
-        Ok(Sequence::new(told, Some(described.into_iter().map(|body| body.name).collect())))
+        let names = described.into_iter().map(|body| body.name).collect();
+        Ok(Sequence { left_out, ..Sequence::new(told, Some(names)) })
     }
 
     /// How many questions there are: of what stands still one a frame, else one a step.
@@ -171,7 +175,7 @@ impl Sequence {
     /// The scene as the first question has it.
     ///
     /// # Errors
-    /// None: every frame has been looked at.
+    /// None: every frame and every pair has been looked at.
     pub fn scene(&self, at_rest: bool) -> Result<Scene, Error> {
         let mut bodies = Vec::with_capacity(self.bodies.len());
         for (body, track) in self.bodies.iter().zip(&self.tracks) {
@@ -181,7 +185,11 @@ impl Sequence {
                 None => body,
             });
         }
-        Ok(Scene::from(bodies))
+        let mut scene = Scene::from(bodies);
+        let ids: Vec<BodyId> = scene.ids().collect();
+        let pairs: Vec<_> = self.left_out.iter().map(|pair| pair.map(|body| ids[body])).collect();
+        scene.leave_out(&pairs)?;
+        Ok(scene)
     }
 
     /// The motions of the bodies for a step or frame.

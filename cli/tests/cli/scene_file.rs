@@ -86,6 +86,49 @@ fn who_meets_whom_is_told() {
 }
 
 #[test]
+fn pairs_that_are_left_out_have_no_rows() {
+    let folder = Folder::new("scene-left-out");
+    meshes(&folder);
+    let bodies = format!(
+        "{FLAT}[[body]]\nmesh = \"parts/tip_down.obj\"\n[[body]]\nname = \"tip\"\n\
+         meshes = [\"parts/tip_up.obj\", \"parts/tip_down.obj\"]\n"
+    );
+    let csv = folder.path("rows.csv");
+    let rows = |list: &str, more: &[&str]| {
+        let scene = folder.write("scene.toml", &format!("{list}\n{bodies}"));
+        ok(&[&["detect", scene.as_str(), "--out", &csv], more].concat());
+        folder.read("rows.csv")
+    };
+    for more in [&["--discrete"][..], &["--continuous"], &["--near", "0.5"]] {
+        let whole = rows("", more);
+        let pair = |row: &&str| row.contains("flat") && row.contains("tip_down");
+        let less: Vec<&str> = whole.lines().filter(|row| !pair(row)).collect();
+        assert!(less.len() > 1 && less.len() < whole.lines().count(), "{whole}");
+        for list in ["[[\"tip_down\", \"flat\"]]", "[[\"flat\", \"tip_down\"], [\"tip_down\", \"flat\"]]"] {
+            let found = rows(&format!("leave_out = {list}"), more);
+            assert_eq!(found.lines().collect::<Vec<_>>(), less, "{more:?}");
+        }
+        assert_eq!(rows("leave_out = []", more), whole);
+    }
+    for (text, said) in [
+        (
+            format!("leave_out = [[\"tip\", \"flat\"],\n[\"flat\", \"tap\"]]\n{bodies}"),
+            "line 2: `leave_out` has the pair [\"flat\", \"tap\"], and no body is named \"tap\"; use the `name`",
+        ),
+        (
+            format!("leave_out = [[\"tip\", \"tip\"]]\n{bodies}"),
+            "and that is one body; set its `self_collision`",
+        ),
+        (format!("leave_out = [[\"tip\"]]\n{bodies}"), "line 1: invalid length 1"),
+        (format!("leave_out = [\"tip\"]\n{bodies}"), "line 1: invalid type: string \"tip\""),
+        (format!("{bodies}leave_out = [[\"tip\", \"flat\"]]"), "unknown field `leave_out`"),
+    ] {
+        let message = refused(3, &["detect", &folder.write("bad.toml", &text)]);
+        assert!(message.contains("bad.toml: ") && message.contains(said), "{text}: {message}");
+    }
+}
+
+#[test]
 fn rows_name_bodies() {
     let folder = Folder::new("scene-rows");
     meshes(&folder);
