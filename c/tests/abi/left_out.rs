@@ -19,15 +19,11 @@ fn a_list_leaves_out_pairs() {
         // SAFETY: as many numbers are there.
         told(|e| unsafe { nearmiss_detector_leave_out(Some(own), pairs.as_ptr().cast(), pairs.len(), e) })
     };
-    let left_out = |own: &mut NearmissDetector| {
-        let shown = |to: Option<&mut MaybeUninit<*const [u32; 2]>>, n, e| {
-            let mut numbers = MaybeUninit::uninit();
-            let code = nearmiss_detector_left_out(Some(own), Some(&mut numbers), n, e);
-            // SAFETY: a call that succeeds writes it, and this one is given all that it needs.
-            to.expect("a place").write(unsafe { numbers.assume_init() }.cast());
-            code
-        };
-        list(shown).expect("pairs").to_vec()
+    let left_out = |own: &mut NearmissDetector| -> Vec<[u32; 2]> {
+        let mut count = MaybeUninit::uninit();
+        let pairs = got(|to, e| nearmiss_detector_left_out(Some(own), to, Some(&mut count), e));
+        // SAFETY: a call that succeeds writes both; as many pairs are there until the next change.
+        unsafe { std::slice::from_raw_parts(pairs.expect("pairs").cast(), count.assume_init()) }.to_vec()
     };
     let mut all = detector(&bodies);
     let whole = rows(&mut all);
