@@ -18,11 +18,11 @@ use crate::stage::fit::{bodies as fit_of_bodies, leaves as fit_of_leaves, rims, 
 use crate::stage::narrow::discrete::{Start, Still};
 use crate::stage::narrow::placed::Placed;
 use crate::stage::narrow::{
-    abreast, below_precision, certain, climb, cull, discrete, divide, features, near, nearest, separate,
+    abreast, below_precision, bodies as narrow_bodies, certain, climb, cull, discrete, divide, features, near, nearest, separate,
     slice, solve, turning,
 };
-use crate::stage::refit::{levels, tiles as refit_of_tiles, treelets};
-use crate::stage::traverse::instances::{nodes, relations, triangles as instance_triangles};
+use crate::stage::refit::{levels, meshes as refit_of_meshes, tiles as refit_of_tiles, treelets};
+use crate::stage::traverse::instances::{nodes, relations, touching, triangles as instance_triangles, within};
 use crate::stage::traverse::{
     front, nearest as nearest_first, per_leaf, queue, steal, tile_triangles, tiles as tile_pairs,
 };
@@ -294,7 +294,18 @@ kernels! {
     fit_bodies: fit_of_bodies::bodies, [BodiesArgs], fit_of_tiles::LANES, fit_of_tiles::shared_bytes::<bv::FrameBox>(), exact = true;
     traverse_relations: relations::relations, [RelationsArgs], NARROW, 0;
     traverse_nodes: nodes::nodes, [NodesArgs], nodes::LANES, nodes::SHARED, exact = true;
-    traverse_instances: instance_triangles::triangles, [InstancesArgs], instance_triangles::LANES, instance_triangles::SHARED, exact = true;
+    traverse_instances: instance_triangles::candidates, [InstancesArgs], instance_triangles::LANES, instance_triangles::SHARED, exact = true;
+    traverse_touching: touching::touching, [TouchingArgs], instance_triangles::LANES, touching::SHARED, exact = true;
+    traverse_relations_within: relations::relations_within, [RelationsWithinArgs], NARROW, 0;
+    traverse_nodes_within: nodes::nodes_within, [NodesWithinArgs], nodes::LANES, nodes::SHARED_WITHIN, exact = true;
+    traverse_bounds: within::bounds, [NodesWithinArgs], NARROW, 0;
+    traverse_corners: within::corners, [InstancesWithinArgs], within::LANES, within::SHARED_CORNERS, exact = true;
+    traverse_instances_within: within::candidates, [InstancesWithinArgs], within::LANES, within::SHARED, exact = true;
+    refit_meshes_vertices_f32: refit_of_meshes::vertices::<f32, B>, [MeshVerticesArgs<f32>], WIDE, 0;
+    refit_meshes_vertices_f64: refit_of_meshes::vertices::<f64, B>, [MeshVerticesArgs<f64>], WIDE, 0;
+    refit_meshes_corners: refit_of_meshes::corners, [MeshRefitArgs], WIDE, 0;
+    refit_meshes_nodes: refit_of_meshes::nodes, [MeshRefitArgs], NARROW, 0;
+    refit_meshes_records: refit_of_meshes::records, [MeshRefitArgs], NARROW, 0;
     balance_copy: balance::copy, [BalanceArgs], BALANCE, 0;
     narrow_moller_f32: discrete::moller::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;
     narrow_moller_f64: discrete::moller::<f64, B>, [DiscreteArgs<f64>], WIDE, 0;
@@ -349,6 +360,12 @@ kernels! {
     narrow_least_f64: nearest::least::<f64, B>, [LeastArgs<f64>], RUNG, 0;
     narrow_witness_f32: nearest::witness::<f32, B>, [LeastArgs<f32>], RUNG, 0;
     narrow_witness_f64: nearest::witness::<f64, B>, [LeastArgs<f64>], RUNG, 0;
+    narrow_bodies_touch: narrow_bodies::touch, [BodiesNarrowArgs], WIDE, 0;
+    narrow_bodies_exact: narrow_bodies::exact, [BodiesNarrowArgs], NARROW, 0;
+    narrow_bodies_meeting: narrow_bodies::meeting, [BodiesNarrowArgs], WIDE, 0;
+    narrow_bodies_least: narrow_bodies::least, [BodiesNarrowArgs], RUNG, 0;
+    narrow_bodies_first: narrow_bodies::first, [BodiesNarrowArgs], RUNG, 0;
+    narrow_bodies_nearest: narrow_bodies::nearest, [BodiesNarrowArgs], RUNG, 0;
     narrow_nearest_f32: nearest::nearest::<f32, B>, [LeastArgs<f32>], NARROW, 0;
     narrow_nearest_f64: nearest::nearest::<f64, B>, [LeastArgs<f64>], NARROW, 0;
     order_count_pair: order::count::count::<Pair, B>, [OrderArgs<Pair>], WIDE, 0;

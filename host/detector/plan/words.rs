@@ -17,7 +17,7 @@ pub const STAGES: [(&str, &str); 9] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 71] = [
+const KERNELS: [(&str, &str); 87] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
     ("place_turns", "rotation vectors and paths of bodies that turn"),
     ("place", "poses applied, uploads put in place, other bodies at rest"),
@@ -40,6 +40,16 @@ const KERNELS: [(&str, &str); 71] = [
     ("refit_levels", "the volumes of a level"),
     ("refit_treelets", "leaves and all other volumes in one launch"),
     ("refit_tiles", "a volume for 16 nodes, for each further level"),
+    ("refit_meshes_vertices", "vertices of deformable bodies, for their meshes"),
+    ("refit_meshes_corners", "their triangles"),
+    ("refit_meshes_nodes", "boxes of their nodes, for each level"),
+    ("refit_meshes_records", "boxes and radii of their meshes"),
+    ("traverse_relations_within", "bodies in the frames of others, if their meshes may be near"),
+    ("traverse_nodes_within", "pairs of nodes of two meshes within the bound, a level lower"),
+    ("traverse_instances_within", "triangles of pairs of tiles within the bound, by boxes"),
+    ("traverse_bounds", "bounds of distances, from boxes"),
+    ("traverse_corners", "bounds of distances, from corners"),
+    ("traverse_touching", "bodies that share a point, by the triangles of pairs of tiles"),
     ("traverse_relations", "bodies in the frames of others, if their meshes may meet"),
     ("traverse_nodes", "pairs of nodes of two meshes, a level lower"),
     ("traverse_instances", "triangles of pairs of tiles of two bodies, by boxes and planes"),
@@ -81,6 +91,12 @@ const KERNELS: [(&str, &str); 71] = [
     ("narrow_least", "the least distance of triangles"),
     ("narrow_witness", "the first pair with the least distance"),
     ("narrow_nearest", "nearest points of that pair"),
+    ("narrow_bodies_touch", "signs in f64 of candidates of two bodies"),
+    ("narrow_bodies_exact", "exact signs of those left uncertain"),
+    ("narrow_bodies_meeting", "pairs of bodies that share a point"),
+    ("narrow_bodies_least", "the least distance of each pair of bodies"),
+    ("narrow_bodies_first", "the first triangles at that distance"),
+    ("narrow_bodies_nearest", "nearest points of these"),
     ("narrow_near", "distances of feature pairs"),
     ("order_count", "contacts of each first feature"),
     ("order_sums", "contacts of each tile of bins"),

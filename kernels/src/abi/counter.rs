@@ -162,6 +162,13 @@ counters! { 0;
     RELATIONS,
     /// Pairs of nodes of two bodies that may meet, level by level.
     NODE_PAIRS: [MESH_LEVELS],
+    /// Pairs of bodies that share a point.
+    MEETING_BODIES,
+    /// The complement of the first pair of bodies that is known to share a point: its smaller body
+    /// above the other.
+    FIRST_BODIES,
+    /// Pairs of bodies within a distance.
+    NEAR_BODIES,
 }
 
 /// The counters of a frame, in device memory.

@@ -4,6 +4,7 @@
 
 #[macro_use]
 mod args;
+mod bodies;
 pub mod counter;
 pub mod earliest;
 mod flags;
@@ -22,6 +23,7 @@ mod tile;
 mod turns;
 
 pub use args::*;
+pub use bodies::*;
 pub use counter::{Counter, Counters, MESH_LEVELS, ROUNDS};
 pub use flags::*;
 pub use instances::*;

@@ -3,11 +3,13 @@
 pub mod centres;
 pub mod course;
 pub mod filter;
+pub mod gap;
 pub mod group;
 pub mod horizon;
 pub mod leaf;
 pub mod on_chip;
 pub mod pieces;
+pub mod placing;
 pub mod relation;
 pub mod rims;
 pub mod tiles;

@@ -8,6 +8,7 @@
 //! | continuous, earliest | the same at t = 0, [`features`], [`cull`], then a solver |
 //! | near | [`features`], [`near`] |
 //! | distance | [`discrete`], [`certain`], [`mod@nearest`] |
+//! | pairs of bodies, their distances | [`bodies`] |
 //!
 //! [`discrete`] counts the triangle pairs that share a point at t = 0, unless the query assumes
 //! none. [`features`] turns triangle pairs into vertex/face and edge/edge candidates, each once.
@@ -21,6 +22,7 @@
 
 pub mod abreast;
 pub mod below_precision;
+pub mod bodies;
 pub mod certain;
 pub mod climb;
 pub mod cull;

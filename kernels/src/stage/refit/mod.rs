@@ -4,6 +4,7 @@
 //!
 //! | file | broad phase | launches | used |
 //! | --- | --- | --- | --- |
+//! | [`meshes`] | instances | vertices, triangles, one a level, bodies | queries of pairs of bodies |
 //! | [`tiles`] | tiles: **the default** | one a level, from the third on | every machine |
 //! | [`treelets`] | trees | one, with barriers within blocks | default of trees on a GPU |
 //! | [`levels`] | trees, the paper's | one a level | default of trees on a CPU |
@@ -11,5 +12,6 @@
 //! Both of trees merge left with right, so they give the same bits.
 
 pub mod levels;
+pub mod meshes;
 pub mod tiles;
 pub mod treelets;

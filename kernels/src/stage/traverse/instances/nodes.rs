@@ -11,8 +11,12 @@
 //! Room     both lists may be too short: counters go on, the host grows them and runs again.
 //! Cost     32 B a node; a box in the other frame 50 operations. Those of one side that meet the
 //!          node of the other are rows, a vote each.
+//!
+//! [`nodes_within`] keeps pairs whose gap is within the bound of their relation, see
+//! [`super::within`].
 
-use crate::abi::{MeshNode, NodePair, NodesArgs, Output, counter};
+use crate::abi::{MeshNode, NodePair, NodesArgs, NodesWithinArgs, Output, Relation, counter};
+use crate::bvh::gap::{CloseInBoth, limit};
 use crate::bvh::pieces::Pieces;
 use crate::bvh::relation::Both;
 use crate::bvh::tiles::TILE;
@@ -24,7 +28,19 @@ pub const LANES: u32 = TILE;
 /// Pairs of nodes below two.
 const FOUND: u32 = LANES * LANES;
 /// Shared memory of a block.
-pub const SHARED: u32 = Pieces::<Both>::bytes(LANES) + 4 * LANES + 8 * FOUND;
+pub const SHARED: u32 = shared_bytes::<Overlap>();
+/// That of [`nodes_within`], which also has a word for a bound.
+pub const SHARED_WITHIN: u32 = shared_bytes::<Near>() + 16;
+
+const fn shared_bytes<T: Test>() -> u32 {
+    Pieces::<T::Item>::bytes(LANES) + 4 * LANES + 8 * FOUND
+}
+
+/// A test of two volumes, each in both frames.
+trait Test: PairTest {
+    /// A volume as an item, with the square of the largest gap.
+    fn item(both: Both, limit: f32) -> Self::Item;
+}
 
 /// Whether boxes overlap in both frames.
 struct Overlap;
@@ -37,6 +53,31 @@ impl PairTest for Overlap {
     }
 }
 
+impl Test for Overlap {
+    #[inline(always)]
+    fn item(both: Both, _: f32) -> Both {
+        both
+    }
+}
+
+/// Whether gaps in both frames are within the limit.
+struct Near;
+
+impl PairTest for Near {
+    type Item = CloseInBoth;
+    #[inline(always)]
+    fn test(a: &CloseInBoth, b: &CloseInBoth) -> bool {
+        a.reaches(b)
+    }
+}
+
+impl Test for Near {
+    #[inline(always)]
+    fn item(both: Both, limit: f32) -> CloseInBoth {
+        CloseInBoth { both, limit }
+    }
+}
+
 /// The nodes below a node: the first, and how many.
 #[inline(always)]
 fn below(at: u32, node: &MeshNode) -> (u32, u32) {
@@ -45,10 +86,29 @@ fn below(at: u32, node: &MeshNode) -> (u32, u32) {
 
 /// Pairs of nodes below pairs.
 pub fn nodes<B: Block>(block: &mut B, args: &NodesArgs) {
-    let rows = Pieces::<Both>::new(block, LANES);
+    descend::<Overlap, B>(block, args, |_, _, _| 0.0);
+}
+
+/// Pairs of nodes below pairs that may hold the nearest pair of triangles.
+pub fn nodes_within<B: Block>(block: &mut B, args: &NodesWithinArgs) {
+    let word = block.shared::<u64>(1);
+    descend::<Near, B>(block, &args.of, |block, number, relation| {
+        limit(super::within::bound(block, &args.words, word, number), relation.slack)
+    });
+}
+
+/// Pairs of nodes below pairs, by a test. `limit` returns the square of the largest gap of a
+/// relation's nodes.
+#[inline(always)]
+fn descend<T: Test, B: Block>(
+    block: &mut B,
+    args: &NodesArgs,
+    mut limit: impl FnMut(&mut B, u32, &Relation) -> f32,
+) {
+    let rows = Pieces::<T::Item>::new(block, LANES);
     let names = block.shared::<u32>(LANES);
     let found = block.shared::<[u32; 2]>(FOUND);
-    let mut own = block.slot([Both::zeroed(); 2]);
+    let mut own = block.slot([T::Item::zeroed(); 2]);
     let mut firsts = block.slot(0u32);
     let mut meets = block.slot([false; 2]);
     let is_root = args.pairs.items().is_empty();
@@ -68,18 +128,20 @@ pub fn nodes<B: Block>(block: &mut B, args: &NodesArgs) {
         };
         let [of_a, of_b] = [a, b].map(|node| block.load(args.tables.nodes, node));
         let ((a, a_count), (b, b_count)) = (below(a, &of_a), below(b, &of_b));
-        let [whole_a, whole_b] = [relation.of_first(&of_a.volume), relation.of_second(&of_b.volume)];
+        let most = limit(block, number, &relation);
+        let [whole_a, whole_b] =
+            [relation.of_first(&of_a.volume), relation.of_second(&of_b.volume)].map(|x| T::item(x, most));
         block.phase(|lane| {
             let i = lane.lane();
-            let mut both = [Both::zeroed(); 2];
+            let mut both = [T::Item::zeroed(); 2];
             let mut meet = [false; 2];
             if i < a_count {
-                both[0] = relation.of_first(&lane.read(args.tables.nodes, a + i).volume);
-                meet[0] = both[0].overlaps(&whole_b);
+                both[0] = T::item(relation.of_first(&lane.read(args.tables.nodes, a + i).volume), most);
+                meet[0] = T::test(&both[0], &whole_b);
             }
             if i < b_count {
-                both[1] = relation.of_second(&lane.read(args.tables.nodes, b + i).volume);
-                meet[1] = both[1].overlaps(&whole_a);
+                both[1] = T::item(relation.of_second(&lane.read(args.tables.nodes, b + i).volume), most);
+                meet[1] = T::test(&both[1], &whole_a);
             }
             *own.of(lane) = both;
             *meets.of(lane) = meet;
@@ -99,7 +161,7 @@ pub fn nodes<B: Block>(block: &mut B, args: &NodesArgs) {
             }
             lane.meet();
         });
-        let fill = block.cross_own::<Overlap>(
+        let fill = block.cross_own::<T>(
             0..height,
             0,
             |lane, k| rows.get(lane, k),

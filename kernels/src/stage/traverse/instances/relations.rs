@@ -9,11 +9,36 @@
 //! Room     `relations` may be too short: counters go on, the host grows it and runs again.
 //! Cost     8 B a pair in, 500 B gathered from cache, 80 B a relation out. 200 operations in f64.
 
-use crate::abi::{Relation, RelationsArgs, counter};
+//!
+//! [`relations_within`] keeps pairs whose root boxes have no gap beyond the distance of the query,
+//! instead ([`crate::bvh::gap`]). A pair that is left out has no two triangles within it.
+
+use crate::abi::{Relation, RelationsArgs, RelationsWithinArgs, counter};
+use crate::bvh::gap::{CloseInBoth, limit};
+use crate::bvh::relation::Both;
 use crate::exec::{Block, Lane, Slot};
 
 /// Pairs of bodies whose root boxes meet.
 pub fn relations<B: Block>(block: &mut B, args: &RelationsArgs) {
+    list(block, args, |_, first, second| first.overlaps(second));
+}
+
+/// Pairs of bodies whose root boxes are within a distance.
+pub fn relations_within<B: Block>(block: &mut B, args: &RelationsWithinArgs) {
+    let within = args.words.within;
+    list(block, &args.of, |relation, first, second| {
+        let limit = limit(within, relation.slack);
+        CloseInBoth { both: *first, limit }.reaches(&CloseInBoth { both: *second, limit })
+    });
+}
+
+/// Lists pairs whose root boxes pass a test.
+#[inline(always)]
+fn list<B: Block>(
+    block: &mut B,
+    args: &RelationsArgs,
+    test: impl Fn(&Relation, &Both, &Both) -> bool + Copy,
+) {
     let (count, lanes) = (args.pairs.listed(block), block.lanes());
     let mut found = block.slot(None);
     let mut places = block.slot(0u32);
@@ -21,7 +46,7 @@ pub fn relations<B: Block>(block: &mut B, args: &RelationsArgs) {
     while base < count {
         block.phase(|lane| {
             let i = base + lane.lane();
-            let own = if i < count { related(lane, args, i) } else { None };
+            let own = if i < count { related(lane, args, i, test) } else { None };
             *places.of(lane) = own.is_some() as u32;
             *found.of(lane) = own;
             lane.meet();
@@ -40,9 +65,14 @@ pub fn relations<B: Block>(block: &mut B, args: &RelationsArgs) {
     }
 }
 
-/// The relation of a pair, if its root boxes meet.
+/// The relation of a pair, if its root boxes pass the test.
 #[inline(always)]
-fn related<L: Lane>(lane: &L, args: &RelationsArgs, i: u32) -> Option<Relation> {
+fn related<L: Lane>(
+    lane: &L,
+    args: &RelationsArgs,
+    i: u32,
+    test: impl Fn(&Relation, &Both, &Both) -> bool,
+) -> Option<Relation> {
     let (tables, pair) = (&args.tables, args.pairs.get(lane, i));
     let of = |body: u32| {
         let mesh = lane.read(tables.meshes, lane.read(tables.bodies, body).mesh);
@@ -52,5 +82,5 @@ fn related<L: Lane>(lane: &L, args: &RelationsArgs, i: u32) -> Option<Relation> 
     let relation = Relation::of([pair.a, pair.b], [&a, &b], [&of_a, &of_b]);
     let first = relation.of_first(&lane.read(tables.nodes, of_a.root).volume);
     let second = relation.of_second(&lane.read(tables.nodes, of_b.root).volume);
-    first.overlaps(&second).then_some(relation)
+    test(&relation, &first, &second).then_some(relation)
 }

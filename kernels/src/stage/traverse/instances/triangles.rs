@@ -11,11 +11,11 @@
 //!          side that has fewer of them, and columns on the other, a lane each; a row takes a test of
 //!          all columns and a vote. Planes take full warps: 100 operations in f32 a pair.
 
-use crate::abi::{Candidate, InstancesArgs, NONE, counter};
+use crate::abi::{Candidate, InstancesArgs, NONE, NodePair, counter};
 use crate::bv::FrameBox;
 use crate::bvh::pieces::Pieces;
 use crate::bvh::tiles::TILE;
-use crate::exec::{Block, Lane, Own, PairTest, RowMap, Slot};
+use crate::exec::{Block, Lane, Own, PairTest, RowMap, Shared, Slot};
 use crate::math::Vec3;
 use crate::prim::planes;
 use bytemuck::Zeroable;
@@ -68,8 +68,60 @@ struct Two {
     meet: [bool; 2],
 }
 
+/// The end of a pair of tiles.
+pub trait Take<B: Block> {
+    /// Whether pairs of tiles of a relation, and of its bodies, need no test.
+    fn is_over(&mut self, block: &mut B, relation: u32, bodies: [u32; 2]) -> bool;
+    /// Takes `fits` pairs of triangles that may meet, as words of [`Candidate`]. Given are the number
+    /// of the pair of tiles, the bodies, and the pair.
+    fn take(
+        &mut self,
+        block: &mut B,
+        args: &InstancesArgs,
+        of: (u32, [u32; 2], NodePair),
+        found: Shared<u32>,
+        fits: u32,
+    );
+}
+
+/// Lists all as candidates.
+struct ListAll;
+
+impl<B: Block> Take<B> for ListAll {
+    #[inline(always)]
+    fn is_over(&mut self, _: &mut B, _: u32, _: [u32; 2]) -> bool {
+        false
+    }
+    #[inline(always)]
+    fn take(
+        &mut self,
+        block: &mut B,
+        args: &InstancesArgs,
+        (tile_pair, ..): (u32, [u32; 2], NodePair),
+        found: Shared<u32>,
+        fits: u32,
+    ) {
+        let base = args.pairs.reserve(block, fits as u64);
+        block.phase(|lane| {
+            let mut at = lane.lane();
+            while at < fits {
+                let places = Candidate::of_word(lane.get(found, at));
+                args.pairs.put(lane, base + at as u64, Candidate { tile_pair, places }.pair());
+                at += LANES;
+            }
+            lane.meet();
+        });
+    }
+}
+
 /// Candidates of pairs of tiles.
-pub fn triangles<B: Block>(block: &mut B, args: &InstancesArgs) {
+pub fn candidates<B: Block>(block: &mut B, args: &InstancesArgs) {
+    triangles(block, args, &mut ListAll);
+}
+
+/// Pairs of triangles of pairs of tiles, taken by `to`.
+#[inline(always)]
+pub fn triangles<B: Block>(block: &mut B, args: &InstancesArgs, to: &mut impl Take<B>) {
     let rows = Pieces::<FrameBox>::new(block, LANES);
     let corners = [Pieces::<Corners>::new(block, LANES), Pieces::<Corners>::new(block, LANES)];
     let names = block.shared::<u32>(LANES);
@@ -83,6 +135,10 @@ pub fn triangles<B: Block>(block: &mut B, args: &InstancesArgs) {
     while unit < count {
         let pair = block.load(args.tile_pairs.items(), unit);
         let relation = block.load(args.relations.items(), pair.relation);
+        if to.is_over(block, pair.relation, relation.bodies) {
+            unit += block.blocks();
+            continue;
+        }
         let [tile_a, tile_b] = [pair.a, pair.b].map(|tile| block.load(tables.nodes, tile).volume);
         let (in_second, in_first) = (relation.of_first(&tile_a).second, relation.of_second(&tile_b).first);
         block.phase(|lane| {
@@ -170,16 +226,7 @@ pub fn triangles<B: Block>(block: &mut B, args: &InstancesArgs) {
             fits += some;
             at += LANES;
         }
-        let base = args.pairs.reserve(block, fits as u64);
-        block.phase(|lane| {
-            let mut at = lane.lane();
-            while at < fits {
-                let places = Candidate::of_word(lane.get(found, at));
-                args.pairs.put(lane, base + at as u64, Candidate { tile_pair, places }.pair());
-                at += LANES;
-            }
-            lane.meet();
-        });
+        to.take(block, args, (tile_pair, relation.bodies, pair), found, fits);
     }
     args.counters.add_once(block, counter::STEPS, tests);
 }

@@ -1,0 +1,97 @@
+//! Queries of pairs of bodies: words of a relation, and arguments of kernels.
+
+use super::{
+    InstanceTables, InstancesArgs, NearestHit, NodePair, NodesArgs, Output, Pair, Point,
+    Relation, RelationsArgs, Span,
+};
+use crate::math::Real;
+use bytemuck::Zeroable;
+
+arguments! {
+    /// Words of each relation. All begin as 0 and only grow.
+    RelationWords {
+        /// The complement of the bits of an upper bound of the least distance; 0 for none.
+        least: Span<u64>,
+        /// The complement of the key of a pair of triangles that share a point; 0 for none.
+        touching: Span<u64>,
+        /// The complement of the key of a pair of triangles at the least distance; 0 for none.
+        first: Span<u64>,
+        /// Largest distance of the query. Length.
+        within: f64,
+    }
+    /// `traverse_relations_within`: pairs of bodies whose meshes may be within the distance.
+    RelationsWithinArgs {
+        /// Bodies, and lists.
+        of: RelationsArgs,
+        /// Words; none is read but the distance.
+        words: RelationWords,
+    }
+    /// `traverse_bounds`, `traverse_nodes_within`: pairs of nodes that may hold the nearest pair.
+    NodesWithinArgs {
+        /// Bodies, and lists.
+        of: NodesArgs,
+        /// Words of each relation.
+        words: RelationWords,
+    }
+    /// `traverse_corners`, `traverse_instances_within`: pairs of tiles to candidates.
+    InstancesWithinArgs {
+        /// Bodies, and lists.
+        of: InstancesArgs,
+        /// Words of each relation.
+        words: RelationWords,
+    }
+    /// `traverse_touching`: pairs of tiles to bodies that share a point, and undecided candidates.
+    TouchingArgs {
+        /// Bodies, and lists; candidates are those that signs in f64 do not decide.
+        of: InstancesArgs,
+        /// Words of each relation.
+        words: RelationWords,
+        /// 1 if only the first pair of bodies is wanted, else 0.
+        only_first: u32,
+        /// Zero.
+        pad: u32,
+    }
+    /// `narrow_bodies_*`: candidates of pairs of bodies.
+    BodiesNarrowArgs {
+        /// Meshes and bodies.
+        tables: InstanceTables,
+        /// The relations.
+        relations: Output<Relation>,
+        /// Pairs of tiles.
+        tile_pairs: Span<NodePair>,
+        /// Words of each relation.
+        words: RelationWords,
+        /// Candidates.
+        pairs: Output<Pair>,
+        /// Out: candidates that signs in f64 do not decide.
+        uncertain: Output<Pair>,
+        /// Out: pairs of bodies that share a point.
+        meeting: Output<Pair>,
+        /// Out: the nearest triangles of each pair of bodies.
+        nearest: Output<NearestHit>,
+        /// 1 if one pair of triangles that share a point is as good as another, else 0.
+        any: u32,
+        /// Zero.
+        pad: u32,
+    }
+    /// `refit_meshes_vertices`: vertices of the scene to those of meshes.
+    MeshVerticesArgs<R: Real> {
+        /// Positions in the scene.
+        positions: Span<Point<R>>,
+        /// A vertex of the scene, and the same among those of all meshes.
+        moves: Span<[u32; 2]>,
+        /// Out: vertices of all meshes.
+        vertices: Span<Point<f64>>,
+    }
+    /// `refit_meshes_corners`, `refit_meshes_nodes`, `refit_meshes_records`: the volumes of meshes.
+    MeshRefitArgs {
+        /// Meshes, in and out.
+        tables: InstanceTables,
+        /// A place of a triangle and its mesh.
+        places: Span<[u32; 2]>,
+        /// Nodes of a level.
+        nodes: Span<u32>,
+        /// Meshes.
+        meshes: Span<u32>,
+    }
+}

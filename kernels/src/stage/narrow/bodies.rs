@@ -1,0 +1,243 @@
+//! # Bodies: candidates of instances → pairs of bodies that share a point, or their distances
+//! Paper    the thesis, section 6.2, the separation distance of two models; here for each pair of
+//!          bodies, with its triangles.
+//! Launch   pairs that share a point: `exact`, then `meeting`, a lane a relation.
+//!          Distances: `touch`, `exact`, `least`, `first`, `nearest`, a lane a candidate.
+//!          A grid of any size strides.
+//! Reads    candidates, pairs of tiles, relations and their words; frames and meshes.
+//! Writes   words of relations; undecided candidates; pairs of bodies; the nearest triangles of
+//!          each.
+//! Before   candidates are those of [`crate::stage::traverse::instances`]. `pairs` of `exact` are
+//!          those that signs in f64 do not decide.
+//! After    touch, exact  touching(r) ≠ 0 ⇔ a candidate of r shares a point, or it was before.
+//!          Without `any`, touching(r) is the complement of the key of the first of them.
+//!          meeting = {r : touching(r) ≠ 0}, as pairs of bodies.
+//!          least  bound(r) = the least computed distance D of the bodies of r, if none of their
+//!          triangles share a point and D ≤ the distance of the query.
+//!          first(r) = the complement of the key of the first candidate at D; 0 if there is none.
+//!          nearest = {(0, p, q) : key(p, q) of touching(r)} ∪ {(D, p, q) : key(p, q) of first(r)}.
+//!          A bound is at least D before (`crate::stage::traverse::instances::within`), and a pair
+//!          at D is a candidate. Its boxes' gap is at most D
+//!          ([`crate::prim::nearest`]), so it is measured whatever other lanes found before. So
+//!          nothing depends on the schedule.
+//! Room     lists: counted past the end, grown, run again. A list that runs again finds words that
+//!          are as high or higher, and truer: pairs are listed by the same words.
+//! Cost     8 B a candidate, 500 B gathered. 600 operations for all signs, if boxes overlap. 4,000
+//!          for a distance, if the boxes are nearer than the best known; thousands for exact signs.
+
+use super::discrete::boxes_apart;
+use super::{Entries, append_each, stride};
+use crate::abi::{BodiesNarrowArgs, NearestHit, Pair};
+use crate::bvh::placing::{PlacedTriangle, candidate, key};
+use crate::exec::{Block, Lane, OPEN, RowMap};
+use crate::math::{Real, Vec3};
+use crate::prim::at_once::meets_at_once;
+use crate::prim::nearest::{Corners, Nearest, gap};
+use crate::prim::tri_tri::{Certain, meets};
+
+/// The least positive number: the distance of triangles that share no point if rounding gives 0.
+const BARELY: f64 = f64::from_bits(1);
+
+/// All signs of two triangles.
+struct AllSigns;
+
+/// Result for two that are apart.
+const APART: u32 = 0;
+/// For two that share a point.
+const MEET: u32 = 1;
+
+impl RowMap for AllSigns {
+    type Number = f64;
+    type Row = [[Vec3<f64>; 3]; 2];
+    #[inline(always)]
+    fn at_once(&self, [p, q]: [[Vec3<f64>; 3]; 2]) -> u32 {
+        match meets_at_once(p, q) {
+            Some(true) => MEET,
+            Some(false) => APART,
+            None => OPEN,
+        }
+    }
+}
+
+/// A candidate: its relation, its triangles, and its key.
+#[derive(Clone, Copy)]
+struct Given {
+    relation: u32,
+    triangles: [PlacedTriangle; 2],
+    key: u64,
+}
+
+impl Given {
+    #[inline(always)]
+    fn of<L: Lane>(lane: &L, args: &BodiesNarrowArgs, pair: Pair) -> Given {
+        let (relation, triangles) = candidate(lane, args.relations.items(), args.tile_pairs, pair);
+        let [p, q] = triangles.map(|triangle| triangle.number(lane, &args.tables));
+        Given { relation, triangles, key: key(p, q) }
+    }
+    #[inline(always)]
+    fn corners<L: Lane>(&self, lane: &L, args: &BodiesNarrowArgs) -> [Corners<f64>; 2] {
+        self.triangles.map(|triangle| triangle.corners(lane, &args.tables))
+    }
+    /// Whether it adds nothing to what is known of its bodies.
+    #[inline(always)]
+    fn is_known<L: Lane>(&self, lane: &L, args: &BodiesNarrowArgs) -> bool {
+        let known = lane.fetch_load(args.words.touching, self.relation);
+        (known >= self.key) | ((args.any != 0) & (known != 0))
+    }
+    /// Its triangles share a point.
+    #[inline(always)]
+    fn touches<L: Lane>(&self, lane: &L, args: &BodiesNarrowArgs) {
+        lane.fetch_max(args.words.touching, self.relation, self.key);
+    }
+    /// Whether some triangles of its bodies share a point. Nothing in this launch changes it.
+    #[inline(always)]
+    fn bodies_touch<L: Lane>(&self, lane: &L, args: &BodiesNarrowArgs) -> bool {
+        lane.read(args.words.touching, self.relation) != 0
+    }
+}
+
+/// How far apart triangles are that share no point.
+#[inline(always)]
+fn apart([p, q]: &[Corners<f64>; 2]) -> f64 {
+    Nearest::of(p, q).distance.greater(BARELY)
+}
+
+/// Signs of candidates whose boxes overlap: words, and what they do not decide.
+pub fn touch<B: Block>(block: &mut B, args: &BodiesNarrowArgs) {
+    let count = args.pairs.listed(block);
+    let mut entries = Entries::new(block);
+    stride(block, count, |block, base| {
+        block.map_rows(
+            &AllSigns,
+            |lane| {
+                let i = base + lane.lane();
+                if i >= count {
+                    return None;
+                }
+                let pair = args.pairs.get(lane, i);
+                let given = Given::of(lane, args, pair);
+                let [p, q] = given.corners(lane, args);
+                (!boxes_apart(&p, &q) && !given.is_known(lane, args)).then_some((pair, given))
+            },
+            |lane, (_, given)| Some(given.corners(lane, args)),
+            |lane, result| {
+                if let Some(((_, given), MEET)) = result {
+                    given.touches(lane, args);
+                }
+                entries.set(lane, result.and_then(|((pair, _), found)| (found == OPEN).then_some(pair)));
+            },
+        );
+        entries.append(block, args.uncertain);
+    });
+}
+
+/// Exact signs of candidates that are left.
+pub fn exact<B: Block>(block: &mut B, args: &BodiesNarrowArgs) {
+    let count = args.pairs.listed(block);
+    stride(block, count, |block, base| {
+        block.phase(|lane| {
+            let i = base + lane.lane();
+            if i < count {
+                let given = Given::of(lane, args, args.pairs.get(lane, i));
+                if !given.is_known(lane, args) && certainly_meet(given.corners(lane, args)) {
+                    given.touches(lane, args);
+                }
+            }
+            lane.meet();
+        });
+    });
+}
+
+/// Whether triangles share a point. By value and out of line: few lanes come here.
+#[inline(never)]
+fn certainly_meet([p, q]: [Corners<f64>; 2]) -> bool {
+    meets::<f64, Certain>(&p, &q) != Some(false)
+}
+
+/// Pairs of bodies that share a point.
+pub fn meeting<B: Block>(block: &mut B, args: &BodiesNarrowArgs) {
+    let count = args.relations.listed(block);
+    append_each(block, count, args.meeting, |lane, i| {
+        let [a, b] = args.relations.get(lane, i).bodies;
+        (lane.read(args.words.touching, i) != 0).then_some(Pair { a, b })
+    });
+}
+
+/// The least distances of bodies that share no point.
+pub fn least<B: Block>(block: &mut B, args: &BodiesNarrowArgs) {
+    let count = args.pairs.listed(block);
+    stride(block, count, |block, base| {
+        block.phase(|lane| {
+            let i = base + lane.lane();
+            if i < count {
+                let given = Given::of(lane, args, args.pairs.get(lane, i));
+                if !given.bodies_touch(lane, args) {
+                    let corners = given.corners(lane, args);
+                    if gap(&corners[0], &corners[1]) < args.words.bound(lane, given.relation) {
+                        args.words.lower(lane, given.relation, apart(&corners));
+                    }
+                }
+            }
+            lane.meet();
+        });
+    });
+}
+
+/// The first candidates at these distances.
+pub fn first<B: Block>(block: &mut B, args: &BodiesNarrowArgs) {
+    let count = args.pairs.listed(block);
+    stride(block, count, |block, base| {
+        block.phase(|lane| {
+            let i = base + lane.lane();
+            if i < count {
+                let given = Given::of(lane, args, args.pairs.get(lane, i));
+                let known = lane.fetch_load(args.words.first, given.relation);
+                if known < given.key && !given.bodies_touch(lane, args) {
+                    let best = args.words.bound_of(lane.read(args.words.least, given.relation));
+                    let corners = given.corners(lane, args);
+                    if gap(&corners[0], &corners[1]) <= best && apart(&corners) == best {
+                        lane.fetch_max(args.words.first, given.relation, given.key);
+                    }
+                }
+            }
+            lane.meet();
+        });
+    });
+}
+
+/// The nearest triangles of each pair of bodies, with their nearest points.
+pub fn nearest<B: Block>(block: &mut B, args: &BodiesNarrowArgs) {
+    let count = args.pairs.listed(block);
+    stride(block, count, |block, base| {
+        block.phase(|lane| {
+            let i = base + lane.lane();
+            if i < count {
+                let given = Given::of(lane, args, args.pairs.get(lane, i));
+                let touching = lane.read(args.words.touching, given.relation);
+                let first = lane.read(args.words.first, given.relation);
+                if (if touching != 0 { touching } else { first }) == given.key {
+                    args.nearest.push(lane, hit(given.key, given.corners(lane, args), touching != 0));
+                }
+            }
+            lane.meet();
+        });
+    });
+}
+
+/// Two triangles with their nearest points. By value and out of line: one candidate of a relation
+/// comes here.
+#[inline(never)]
+fn hit(key: u64, triangles: [Corners<f64>; 2], meets: bool) -> NearestHit {
+    let [p, q] = &triangles;
+    let found = if meets { Nearest::meeting(p, q) } else { Nearest::of(p, q) };
+    let distance = if meets { 0.0 } else { found.distance.greater(BARELY) };
+    let mut points = [[0.0; 3]; 2];
+    let mut k = 0;
+    while k < 2 {
+        let [x, y, z] = triangles[k];
+        let [s, t] = found.at[k];
+        points[k] = (x + (y - x) * s + (z - x) * t).0;
+        k += 1;
+    }
+    NearestHit { a: (!key >> 32) as u32, b: !key as u32, distance, at: found.at, points }
+}

@@ -1,0 +1,240 @@
+//! # Within: pairs of nodes and tiles → bounds of the least distance, and candidates within them
+//! Paper    the thesis, section 6.2, and Larsen et al. 1999: branch and bound by distances of
+//!          volumes. Here level by level, for all pairs of bodies at once.
+//! Launch   `bounds`: a lane a pair of nodes; a grid of any size strides; before each level, first
+//!          over the roots of all relations.
+//!          `corners`, `candidates`: blocks of a warp, which stride over the pairs of tiles.
+//! Reads    a relation and its bound; two nodes; 32 triangles of each tile.
+//! Writes   bounds; candidates, a pair of tiles and two places, each once, in no order.
+//! Before   relations and pairs are listed. A bound is none, or at least the least distance of its
+//!          two bodies, as computed.
+//! After    the same of bounds. They are at most the largest distance of volumes of a pair, and
+//!          the least distance of first corners of a pair of tiles.
+//!          pairs ⊇ {(p, q) : p in tile a, q in tile b, computed distance = the least of the bodies
+//!          ≤ the distance of the query}
+//!          ∪ {(p, q) : placed triangles share a point}.
+//!          Bounds change while they are read, so other candidates depend on the schedule. A pair
+//!          above is within every bound: see [`crate::bvh::gap`].
+//! Room     `pairs` may be too short: counters go on, the host grows it and runs again.
+//! Cost     `bounds` 150 operations a pair. `corners` 1,024 distances of points a pair of tiles.
+
+use crate::abi::{
+    Candidate, InstancesWithinArgs, MeshNode, NONE, NodePair, NodesWithinArgs, Relation, RelationWords,
+    counter,
+};
+use crate::bvh::gap::{Close, apart, farthest, limit};
+use crate::bvh::pieces::Pieces;
+use crate::bvh::tiles::TILE;
+use crate::exec::{Block, Lane, Own, PairTest, Shared, Slot};
+use crate::math::Real;
+use bytemuck::Zeroable;
+
+/// Lanes of a block, a lane a triangle.
+pub const LANES: u32 = TILE;
+/// Pairs of triangles of two tiles.
+const FOUND: u32 = LANES * LANES;
+/// A point, in shared memory.
+type Point = [f32; 3];
+/// Shared memory of `corners`: a bound, the least square, and points.
+pub const SHARED_CORNERS: u32 = 16 + Pieces::<Point>::bytes(LANES);
+/// Shared memory of `candidates`: a bound, rows with their names, and what was found.
+pub const SHARED: u32 = 16 + Pieces::<Close>::bytes(LANES) + 4 * LANES + 4 * FOUND;
+
+/// The bound of a relation, the same for all lanes of the block.
+#[inline(always)]
+pub fn bound<B: Block>(block: &mut B, words: &RelationWords, word: Shared<u64>, relation: u32) -> f64 {
+    block.phase(|lane| {
+        if lane.lane() == 0 {
+            lane.put(word, 0, lane.fetch_load(words.least, relation));
+        }
+        lane.meet();
+    });
+    words.bound_of(block.peek(word, 0))
+}
+
+/// Lowers bounds by the largest distances of volumes.
+pub fn bounds<B: Block>(block: &mut B, args: &NodesWithinArgs) {
+    let of = &args.of;
+    let is_root = of.pairs.items().is_empty();
+    let count = if is_root { of.relations.listed(block) } else { of.pairs.listed(block) };
+    let lanes = block.lanes();
+    let mut base = block.block() * lanes;
+    while base < count {
+        block.phase(|lane| {
+            let i = base + lane.lane();
+            if i < count {
+                let pair = if is_root { NodePair::zeroed() } else { of.pairs.get(lane, i) };
+                let number = if is_root { i } else { pair.relation };
+                let relation = of.relations.get(lane, number);
+                let root = |body: u32| {
+                    lane.read(of.tables.meshes, lane.read(of.tables.bodies, body).mesh).root
+                };
+                let [a, b] = if is_root { relation.bodies.map(root) } else { [pair.a, pair.b] };
+                let [a, b] = [a, b].map(|node| lane.read(of.tables.nodes, node).volume);
+                args.words.lower(lane, number, farthest(&relation, &a, &b));
+            }
+            lane.meet();
+        });
+        base += block.blocks() * lanes;
+    }
+}
+
+/// A pair of tiles, its relation, and the square of the largest gap.
+struct Tiles {
+    pair: NodePair,
+    relation: Relation,
+    nodes: [MeshNode; 2],
+    limit: f32,
+}
+
+/// The pair of a number.
+#[inline(always)]
+fn tiles<B: Block>(block: &mut B, args: &InstancesWithinArgs, word: Shared<u64>, unit: u32) -> Tiles {
+    let pair = block.load(args.of.tile_pairs.items(), unit);
+    let relation = block.load(args.of.relations.items(), pair.relation);
+    let limit = limit(bound(block, &args.words, word, pair.relation), relation.slack);
+    let nodes = [pair.a, pair.b].map(|tile| block.load(args.of.tables.nodes, tile));
+    Tiles { pair, relation, nodes, limit }
+}
+
+impl Tiles {
+    /// The volumes of both tiles in the frame of the first body.
+    #[inline(always)]
+    fn volumes(&self) -> [Close; 2] {
+        let second = self.relation.of_second(&self.nodes[1].volume).first;
+        [self.nodes[0].volume, second].map(|volume| Close { volume, limit: self.limit })
+    }
+}
+
+/// Lowers bounds by distances of first corners of triangles.
+pub fn corners<B: Block>(block: &mut B, args: &InstancesWithinArgs) {
+    let words = block.shared::<u64>(2);
+    let points = Pieces::<Point>::new(block, LANES);
+    let (count, tables) = (args.of.tile_pairs.listed(block), &args.of.tables);
+    let mut own = block.slot([0f32; 3]);
+    let mut unit = block.block();
+    while unit < count {
+        let at = tiles(block, args, words, unit);
+        unit += block.blocks();
+        let [a, b] = at.volumes();
+        if !a.reaches(&b) {
+            continue;
+        }
+        block.phase(|lane| {
+            // The first place of a tile has a triangle.
+            let corner = |tile: u32| {
+                let place = tile * TILE + lane.lane();
+                let is_empty = lane.read(tables.leaves, place).number == NONE;
+                lane.read(tables.triangles, if is_empty { tile * TILE } else { place }).corners[0]
+            };
+            *own.of(lane) = corner(at.pair.a);
+            points.put(lane, lane.lane(), at.relation.to_first(corner(at.pair.b)));
+            if lane.lane() == 0 {
+                lane.put(words, 1, u64::MAX);
+            }
+            lane.meet();
+        });
+        block.phase(|lane| {
+            let p = own.of(lane).map(|x| x.wide());
+            let (mut least, mut k) = (f64::INFINITY, 0);
+            while k < LANES {
+                let q = points.get(lane, k).map(|x| x.wide());
+                let d = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+                least = least.lesser(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+                k += 1;
+            }
+            // Squares are at least 0: their bits are ordered as they are.
+            lane.shared_min(words, 1, least.to_bits());
+            lane.meet();
+        });
+        block.phase(|lane| {
+            if lane.lane() == 0 {
+                let squared = f64::from_bits(lane.get(words, 1));
+                args.words.lower(lane, at.pair.relation, apart(&at.relation, squared));
+            }
+            lane.meet();
+        });
+    }
+}
+
+/// Whether a gap is within the limit.
+struct Near;
+
+impl PairTest for Near {
+    type Item = Close;
+    #[inline(always)]
+    fn test(a: &Close, b: &Close) -> bool {
+        a.reaches(b)
+    }
+}
+
+/// Candidates of pairs of tiles, by the gaps of boxes in the frame of the first body.
+pub fn candidates<B: Block>(block: &mut B, args: &InstancesWithinArgs) {
+    let word = block.shared::<u64>(1);
+    let rows = Pieces::<Close>::new(block, LANES);
+    let names = block.shared::<u32>(LANES);
+    let found = block.shared::<u32>(FOUND);
+    let mut columns = block.slot((Close::zeroed(), false));
+    let mut row = block.slot(Close::zeroed());
+    let mut places = block.slot(0u32);
+    let (count, tables) = (args.of.tile_pairs.listed(block), &args.of.tables);
+    let (mut unit, mut tests) = (block.block(), 0u64);
+    while unit < count {
+        let (at, tile_pair) = (tiles(block, args, word, unit), unit);
+        unit += block.blocks();
+        let [a, b] = at.volumes();
+        if !a.reaches(&b) {
+            continue;
+        }
+        block.phase(|lane| {
+            let i = lane.lane();
+            let close = |volume| Close { volume, limit: at.limit };
+            let p = lane.read(tables.leaves, at.pair.a * TILE + i);
+            *row.of(lane) = close(p.volume);
+            *places.of(lane) = ((p.number != NONE) & close(p.volume).reaches(&b)) as u32;
+            let place = at.pair.b * TILE + i;
+            let is_there = lane.read(tables.leaves, place).number != NONE;
+            let [x, y, z] = lane.read(tables.triangles, place).corners;
+            let of = &at.relation;
+            let q = close(of.around(&[of.to_first(x), of.to_first(y), of.to_first(z)]));
+            *columns.of(lane) = (q, is_there & q.reaches(&a));
+            lane.meet();
+        });
+        // A lane's wish is gone once places are numbered: its row tells it again.
+        let height = block.number(&mut places);
+        tests += (2 * LANES + LANES * height) as u64;
+        if height == 0 {
+            continue;
+        }
+        block.phase(|lane| {
+            let (i, own) = (lane.lane(), *row.of(lane));
+            let is_there = lane.read(tables.leaves, at.pair.a * TILE + i).number != NONE;
+            if is_there & own.reaches(&b) {
+                rows.put(lane, *places.of(lane), own);
+                lane.put(names, *places.of(lane), i);
+            }
+            lane.meet();
+        });
+        let fill = block.cross_own::<Near>(
+            0..height,
+            0,
+            |lane, k| rows.get(lane, k),
+            |lane| {
+                let (item, is_column) = *columns.of(lane);
+                Own { item, name: lane.lane(), end: if is_column { height } else { 0 } }
+            },
+            |lane, at, [k, name]| lane.put(found, at, Candidate::word([lane.get(names, k), name])),
+        );
+        let base = args.of.pairs.reserve(block, fill as u64);
+        block.phase(|lane| {
+            let mut at = lane.lane();
+            while at < fill {
+                let places = Candidate::of_word(lane.get(found, at));
+                args.of.pairs.put(lane, base + at as u64, Candidate { tile_pair, places }.pair());
+                at += LANES;
+            }
+            lane.meet();
+        });
+    }
+    args.of.counters.add_once(block, counter::STEPS, tests);
+}
