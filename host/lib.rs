@@ -83,7 +83,7 @@ pub use detector::{Detector, plan};
 pub use device::{Device, Interrupt};
 pub use error::Error;
 pub use mesh::Mesh;
-pub use query::{Continuous, Discrete, Distance, Earliest, Near, Query};
+pub use query::{BodyDistances, BodyPairs, Continuous, Discrete, Distance, Earliest, Near, Query};
 pub use scene::{Body, Scene};
 pub use several::{DeviceShare, MultiDetector};
 pub use stages::{Stage, Stages};

@@ -52,7 +52,9 @@ pub mod pipeline {
 
 use crate::contacts::{Contacts, Stats};
 use crate::query::kind::Question;
-use crate::query::{Continuous, Discrete, Distance, Earliest, Near, Query, QueryKind, TypedQuery};
+use crate::query::{
+    BodyDistances, BodyPairs, Continuous, Discrete, Distance, Earliest, Near, Query, QueryKind, TypedQuery,
+};
 use crate::{Detector, Error, Stage};
 
 /// Search for candidates of a query, and its solver.
@@ -64,7 +66,7 @@ pub trait QueryExt: TypedQuery {
     fn certified_mut(&mut self) -> Option<&mut Certified>;
 
     /// Returns a query for each of its solvers, the default first. All other choices are at their
-    /// defaults. [`Query`] has those of all five kinds.
+    /// defaults. [`Query`] has those of all kinds but pairs of bodies.
     fn every() -> std::vec::IntoIter<Self>;
 
     /// Returns the choices of its certified solver, if it has one.
@@ -157,7 +159,7 @@ macro_rules! queries {
     )+ };
 }
 
-queries! { Discrete Continuous Earliest Near Distance }
+queries! { Discrete Continuous Earliest Near Distance BodyPairs BodyDistances }
 
 impl QueryExt for Query {
     fn search_mut(&mut self) -> &mut Search {

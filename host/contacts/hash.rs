@@ -18,7 +18,7 @@ impl Contacts {
     /// xxh3 over the canonical answer, little-endian: equal answers have equal hashes on every
     /// machine. A contact adds its kind, status, indices and times. A near pair adds its squared
     /// distance and weights instead of times. The nearest triangles add their distance, weights and
-    /// points. Bodies come first in each row. They are left out if all rows are within body 0, or
+    /// points. A pair of bodies adds their numbers. Bodies come first in each row. They are left out if all rows are within body 0, or
     /// all are between bodies 0 and 1.
     pub fn hash(&self) -> u64 {
         let mut hash = xxhash_rust::xxh3::Xxh3::new();
@@ -53,6 +53,8 @@ impl Contacts {
                 }
             }
             Rows::Distance(nearest) => nearest.iter().for_each(|nearest| hash.update(&nearest.bytes())),
+            Rows::BodyPairs(pairs) => pairs.iter().for_each(|pair| hash.update(&pair.bytes())),
+            Rows::BodyDistances(all) => all.iter().for_each(|nearest| hash.update(&nearest.bytes())),
             Rows::Earliest(toi) => toi.iter().for_each(|toi| hash.update(&toi.to_le_bytes())),
         }
         hash.digest()

@@ -136,6 +136,12 @@ impl sealed::Rows for Rows {
             Rows::Distance(_) => {
                 ("a distance", "read `points` and `weights` of this answer's nearest triangles")
             }
+            Rows::BodyPairs(_) => {
+                ("a body-pairs", "use a discrete query: its pairs of triangles have geometry")
+            }
+            Rows::BodyDistances(_) => {
+                ("a body-distances", "read `points` and `weights` of this answer's nearest triangles")
+            }
         };
         let what = format!("geometry of the answer to {query} query, which has no pairs of features");
         Err(Error::InvalidArgument { what, advice: advice.into() })

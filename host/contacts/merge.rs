@@ -27,7 +27,8 @@ impl Contacts {
                 Rows::Pairs(pairs) => sort::merge(pairs.to_mut(), TrianglePair::key, looks),
                 Rows::Contacts(contacts) => sort::merge(contacts.to_mut(), Contact::key, looks),
                 Rows::Near(pairs) => sort::merge(pairs.to_mut(), near::NearPair::key, looks),
-                Rows::Earliest(_) | Rows::Distance(_) => {}
+                // Queries of bodies have one share.
+                Rows::Earliest(_) | Rows::Distance(_) | Rows::BodyPairs(_) | Rows::BodyDistances(_) => {}
             }
         }
         Some(whole)
@@ -61,7 +62,13 @@ impl Contacts {
             }
             // All shares answer the same query, so their rows have the same kind.
             (
-                Rows::Pairs(_) | Rows::Contacts(_) | Rows::Near(_) | Rows::Earliest(_) | Rows::Distance(_),
+                Rows::Pairs(_)
+                | Rows::Contacts(_)
+                | Rows::Near(_)
+                | Rows::Earliest(_)
+                | Rows::Distance(_)
+                | Rows::BodyPairs(_)
+                | Rows::BodyDistances(_),
                 _,
             ) => {}
         }

@@ -1,5 +1,6 @@
 //! Results: contacts in canonical order, and their hash.
 
+mod bodies;
 mod caveats;
 mod curves;
 mod first;
@@ -19,6 +20,7 @@ pub(crate) mod summary;
 mod triangles;
 pub(crate) mod work;
 
+pub use bodies::BodyPair;
 pub use caveats::{Caveat, TURN_DEGREES};
 pub use curves::{Curve, Curves, crossing_curves};
 pub use first::FirstContact;
@@ -150,6 +152,10 @@ pub enum Rows {
     Near(RowList<NearPair>),
     /// Nearest triangles of different bodies; `None` if no two bodies may meet.
     Distance(Option<NearestTriangles>),
+    /// Pairs of bodies that share a point, ascending by the first body, then by the second.
+    BodyPairs(RowList<BodyPair>),
+    /// Nearest triangles of each pair of bodies within the distance, in the order of the bodies.
+    BodyDistances(RowList<NearestTriangles>),
 }
 
 /// Answer to any query: see [`Answer`].
@@ -214,6 +220,8 @@ impl<T> Answer<T> {
     ///   False for a query of [crossing triangles alone](crate::Discrete::with_only_crossing), which
     ///   does not show what touches.
     /// - Distance: it exceeds 0, or no two bodies may meet.
+    /// - Pairs of bodies: none shares a point. Distances of bodies: all exceed 0. Contacts within a
+    ///   body are not tested.
     /// - Near: always false, since features within a distance do not show if anything crosses.
     ///
     /// ```
@@ -262,6 +270,8 @@ impl Contacts {
             Query::Earliest(_) => Rows::Earliest(None),
             Query::Near(_) => Rows::Near(RowList::default()),
             Query::Distance(_) => Rows::Distance(None),
+            Query::BodyPairs(_) => Rows::BodyPairs(RowList::default()),
+            Query::BodyDistances(_) => Rows::BodyDistances(RowList::default()),
         };
         Contacts::new(rows, query, query.checks_start().then_some(0))
     }
@@ -274,6 +284,8 @@ impl Rows {
             Rows::Contacts(_) | Rows::Earliest(_) => starts_crossing == Some(0) && self.is_empty(),
             Rows::Near(_) => false,
             Rows::Distance(nearest) => nearest.is_none_or(|nearest| nearest.distance > 0.0),
+            Rows::BodyPairs(pairs) => pairs.is_empty(),
+            Rows::BodyDistances(all) => all.iter().all(|nearest| nearest.distance > 0.0),
         }
     }
 
@@ -285,6 +297,8 @@ impl Rows {
             Rows::Earliest(toi) => toi.iter().len(),
             Rows::Near(near) => near.len(),
             Rows::Distance(nearest) => nearest.iter().len(),
+            Rows::BodyPairs(pairs) => pairs.len(),
+            Rows::BodyDistances(all) => all.len(),
         }
     }
 
@@ -319,6 +333,16 @@ impl Rows {
         if let Rows::Distance(nearest) = self { nearest.as_ref() } else { None }
     }
 
+    /// Pairs of bodies that share a point; empty for other queries.
+    pub fn body_pairs(&self) -> &[BodyPair] {
+        if let Rows::BodyPairs(pairs) = self { pairs } else { &[] }
+    }
+
+    /// Nearest triangles of each pair of bodies within a distance; empty for other queries.
+    pub fn body_distances(&self) -> &[NearestTriangles] {
+        if let Rows::BodyDistances(all) = self { all } else { &[] }
+    }
+
     /// Distance of the nearest triangles, in scene units: 0 if and only if they share a point.
     pub fn distance(&self) -> Option<f64> {
         self.nearest().map(|nearest| nearest.distance)
@@ -327,7 +351,11 @@ impl Rows {
     /// Smallest time of contact of a continuous or earliest query.
     pub fn earliest_toi(&self) -> Option<f64> {
         match self {
-            Rows::Pairs(_) | Rows::Near(_) | Rows::Distance(_) => None,
+            Rows::Pairs(_)
+            | Rows::Near(_)
+            | Rows::Distance(_)
+            | Rows::BodyPairs(_)
+            | Rows::BodyDistances(_) => None,
             Rows::Contacts(contacts) => contacts.iter().map(|c| c.toi).min_by(f64::total_cmp),
             Rows::Earliest(toi) => *toi,
         }

@@ -48,7 +48,7 @@ pub struct Summary {
     pub largest_tolerance: Option<f64>,
     /// Minimum separation of a certified solver, in scene units; 0 for touching.
     pub min_separation: Option<f64>,
-    /// Distance of a near query, in scene units.
+    /// Largest distance of a near or a body-distances query, in scene units.
     pub distance: Option<f64>,
     /// Nearest triangles of a distance query, their distance and nearest points.
     pub nearest: Option<NearestTriangles>,

@@ -59,7 +59,11 @@ impl Detector {
                 .filter(|tolerances| tolerances.least < tolerances.largest)
                 .map(|tolerances| tolerances.largest),
             min_separation: query.certified().map(|certified| certified.params().min_separation),
-            distance: if let Query::Near(near) = query { Some(near.distance) } else { None },
+            distance: match query {
+                Query::Near(near) => Some(near.distance),
+                Query::BodyDistances(distances) => Some(distances.within),
+                _ => None,
+            },
             nearest: contacts.nearest().copied(),
             earliest_toi: contacts.earliest_toi(),
             starts_crossing: contacts.starts_crossing,

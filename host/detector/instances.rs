@@ -2,6 +2,7 @@
 //! vertices in the scene.
 
 use super::Detector;
+use crate::error::Error;
 use crate::pipeline::Share;
 use crate::query::Query;
 use crate::scene::{Body, BodyKind};
@@ -28,13 +29,40 @@ impl Detector {
         self.engine.has_vertices |= !self.engine.has_instances;
     }
 
+    /// Refuses a query of pairs of bodies where it cannot be answered: by shares of several devices,
+    /// or if only the device has the pose of a rigid body.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`].
+    pub(super) fn may_pair_bodies(&self, query: &Query) -> Result<(), Error> {
+        let kind = query.kind();
+        if !kind.is_of_bodies() {
+            return Ok(());
+        }
+        if self.portion.is_part || self.portion.share != Share::WHOLE {
+            return Err(Error::InvalidArgument {
+                what: format!("a {kind} query cannot be divided among several devices"),
+                advice: "use a `Detector` on one device".into(),
+            });
+        }
+        let is_lent = |body: &&Body| body.kind() == BodyKind::Rigid && body.is_device_resident();
+        if self.scene.bodies().iter().any(|body| is_lent(&body)) {
+            return Err(Error::InvalidArgument {
+                what: format!("a {kind} query needs poses of rigid bodies that the host has"),
+                advice: "move rigid bodies by `Motion::Pose` before this query".into(),
+            });
+        }
+        Ok(())
+    }
+
     /// Returns whether a query reads instances. If it reads vertices and the pipeline has none, the
     /// next pipeline will have them: the host has every pose.
     pub(super) fn reads_instances(&mut self, query: &Query) -> bool {
         if self.engine.pipeline.is_none() {
             self.choose_instances();
         }
-        let reads = self.engine.has_instances && query.may_read_instances();
+        let is_of_bodies = query.kind().is_of_bodies();
+        let reads = is_of_bodies || self.engine.has_instances && query.may_read_instances();
         if !reads && !self.engine.has_vertices {
             self.engine.drop_pipeline();
             self.engine.has_vertices = true;

@@ -146,7 +146,11 @@ impl Detector {
         let tiles = self.layout(query)?.moving_triangles().div_ceil(TILE as usize) as u64;
         let by_tiles = query.broad_phase_on(self.device.is_gpu()) == BroadPhase::Tiles;
         let is_short = matches!(error, Error::OutOfMemory { .. });
-        if !is_short || !by_tiles || u64::from(self.portion.slices(query)) >= tiles {
+        if !is_short
+            || !by_tiles
+            || query.kind().is_of_bodies()
+            || u64::from(self.portion.slices(query)) >= tiles
+        {
             return Err(error);
         }
         if self.engine.pipeline.is_some() {

@@ -63,6 +63,18 @@ fn check_shapes(queries: &[Query]) -> Result<(), Error> {
     Ok(())
 }
 
+/// Refuses a query of pairs of bodies: its rows are made on the host.
+fn without_bodies(query: &Query) -> Result<(), Error> {
+    let kind = query.kind();
+    if !kind.is_of_bodies() {
+        return Ok(());
+    }
+    Err(Error::InvalidArgument {
+        what: format!("a {kind} query cannot be submitted"),
+        advice: "use `Detector::query`, which waits for the answer".into(),
+    })
+}
+
 impl Detector {
     /// Prepares submissions, for which the host does not wait.
     ///
@@ -89,6 +101,7 @@ impl Detector {
     fn prepared(&mut self, motions: &[(BodyId, DeviceMotion)], queries: &[Query]) -> Result<(), Error> {
         check_shapes(queries)?;
         queries.iter().try_for_each(Query::check)?;
+        queries.iter().try_for_each(without_bodies)?;
         let given: Vec<(BodyId, Motion)> =
             motions.iter().map(|&(id, motion)| (id, Motion::OnDevice(motion))).collect();
         let in_motion = queries.iter().find(|query| !query.kind().is_at_rest());

@@ -6,13 +6,14 @@ mod features;
 use super::counts::Counts;
 use super::{Found, Hits, Layout, Listed, Stages};
 use crate::contacts::{
-    Caveat, Closest, Contact, Contacts, Front, Kind, NearPair, NearestTriangles, Queues, Row, RowList, Rows,
-    Stats, Status, TrianglePair, sort,
+    BodyPair, Caveat, Closest, Contact, Contacts, Front, Kind, NearPair, NearestTriangles, Queues, Row,
+    RowList, Rows, Stats, Status, TrianglePair, sort,
 };
 use crate::error::Error;
 use crate::memory;
 use crate::pipeline::order::Ordered;
 use crate::query::Query;
+use crate::scene::BodyId;
 use features::{Features, features};
 use nearmiss_emulator::Looks;
 use nearmiss_kernels::abi::{Hit, NearHit, NearestHit, Pair, counter};
@@ -34,13 +35,11 @@ pub fn collect(
     let count = |which| found.counters[which];
     let turning = [count(counter::VF_TURNING), count(counter::EE_TURNING)];
     let vf_ee = [count(counter::VF) + turning[0], count(counter::EE) + turning[1]];
-    let of_triangles = matches!(found.listed, Listed::Pairs(_) | Listed::Nearest(_));
+    let of_triangles = !query.kind().is_of_features();
     let starts_crossing = found.is_start_checked.then(|| count(counter::STARTS_CROSSING));
     let undecided = match found.listed {
         Listed::Earliest { undecided, .. } => undecided.into(),
-        Listed::Pairs(_) | Listed::Hits { .. } | Listed::Near(_) | Listed::Nearest(_) => {
-            count(counter::UNDECIDED)
-        }
+        _ => count(counter::UNDECIDED),
     };
     let caveats = caveats(&found);
     let stats = Stats {
@@ -72,6 +71,18 @@ fn rows(found: Found, layout: &Layout, looks: &Looks) -> Rows {
     match found.listed {
         Listed::Earliest { toi, .. } => Rows::Earliest(toi),
         Listed::Nearest(nearest) => Rows::Distance(nearest.first().map(|hit| nearest_triangles(hit, layout))),
+        Listed::BodyPairs { pairs, first } => {
+            let pair = |p: &Pair| BodyPair { bodies: [BodyId(p.a), BodyId(p.b)] };
+            let mut pairs: Vec<BodyPair> = pairs.iter().map(pair).collect();
+            sort::sort(&mut pairs, |pair| *pair, looks);
+            pairs.truncate(first.map_or(usize::MAX, |first| first as usize));
+            Rows::BodyPairs(pairs.into())
+        }
+        Listed::BodyDistances(nearest) => {
+            let mut all: Vec<_> = nearest.iter().map(|hit| nearest_triangles(hit, layout)).collect();
+            sort::sort(&mut all, |nearest| nearest.bodies, looks);
+            Rows::BodyDistances(all.into())
+        }
         Listed::Pairs(hits) => {
             let pair = |p: &Pair, _| {
                 let [(a, p), (b, q)] = [p.a, p.b].map(|t| layout.locate(t, |at| at.triangle));
@@ -149,9 +160,7 @@ fn caveats(found: &Found) -> Vec<Caveat> {
     match found.listed {
         Listed::Near(_) => put(unsure, Caveat::DistanceBelowPrecision { pairs: unsure }),
         Listed::Earliest { undecided, .. } => put(undecided as u64, Caveat::EarliestUndecided),
-        Listed::Pairs(_) | Listed::Hits { .. } | Listed::Nearest(_) => {
-            put(unsure, Caveat::Undecided { pairs: unsure });
-        }
+        _ => put(unsure, Caveat::Undecided { pairs: unsure }),
     }
     put(ended, Caveat::Iterations { pairs: ended });
     put(below_precision, Caveat::ToleranceBelowPrecision { pairs: Some(below_precision) });

@@ -6,8 +6,9 @@ use super::layout::Layout;
 use crate::device::Device;
 use crate::error::Error;
 use crate::memory;
-use crate::query::{ListedRows, Query};
-use nearmiss_kernels::abi::{Counter, counter};
+use crate::query::{ListedRows, Query, QueryKind};
+use crate::scene::CollisionFilter;
+use nearmiss_kernels::abi::{BodyRecord, Counter, EVERY, counter};
 
 /// Least size in bytes of an answer that is compared with free memory.
 const LITTLE: u64 = 16 << 20;
@@ -42,7 +43,11 @@ impl Demand {
         let counters: &[Counter] = if query.kind().is_of_features() {
             &[counter::VF_HITS, counter::EE_HITS]
         } else {
-            &[counter::CONTACTS]
+            match query.kind() {
+                QueryKind::BodyPairs => &[counter::MEETING_BODIES],
+                QueryKind::BodyDistances => &[counter::NEAR_BODIES],
+                _ => &[counter::CONTACTS],
+            }
         };
         Demand { row: bytes as u64, counters, within, advice, before: 0 }
     }

@@ -50,6 +50,14 @@ impl<T: Pod> List<T> {
         Ok(())
     }
 
+    /// Sets every byte of the memory to zero, after all work started before.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn clear(&mut self) -> Result<(), Error> {
+        self.entries.clear()
+    }
+
     /// Returns the list as a kernel's output, with these counters.
     pub fn output(&self, counters: Counters) -> Output<T> {
         counters.output(self.entries.span(), self.counter)

@@ -168,7 +168,7 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
             // Submissions keep the numbers that they were prepared with.
             self.submission = None;
         }
-        self.queries[at].set(&self.scene, parts)?;
+        self.queries[at].set(&mut self.scene, parts)?;
         if self.queries[at].share != parts.share {
             self.take(at, parts.share)?;
         }

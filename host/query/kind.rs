@@ -41,6 +41,13 @@ pub(crate) trait Question {
     {
         true
     }
+    /// Returns whether its rows are pairs of bodies. These queries always read bodies as instances.
+    fn is_of_bodies() -> bool
+    where
+        Self: Sized,
+    {
+        false
+    }
     /// Returns a query for each of its solvers, the default first. All other choices are at their
     /// defaults.
     fn every() -> Vec<Self>
@@ -149,6 +156,14 @@ macro_rules! kinds {
                 }
             }
 
+            /// Returns whether its rows are pairs of bodies. Submissions and
+            /// [`MultiDetector`](crate::MultiDetector) do not have these queries.
+            pub fn is_of_bodies(self) -> bool {
+                match self {
+                    $(QueryKind::$kind => <$kind as Question>::is_of_bodies(),)+
+                }
+            }
+
             /// Returns whether it tests vertices, edges and faces, instead of triangles.
             pub(crate) fn is_of_features(self) -> bool {
                 match self {
@@ -166,8 +181,15 @@ macro_rules! kinds {
             }
 
             /// Returns a query for each kind and each of its solvers, as tests and `selftest` need
-            /// them. All other choices are at their defaults.
+            /// them. All other choices are at their defaults. Queries of pairs of bodies are not
+            /// among them: these have no choices of how candidates are found.
             pub(crate) fn every() -> std::vec::IntoIter<Query> {
+                let all: Vec<Query> = Query::of_every_kind().filter(|q| !q.kind().is_of_bodies()).collect();
+                all.into_iter()
+            }
+
+            /// Returns a query for each kind and each of its solvers.
+            pub(crate) fn of_every_kind() -> std::vec::IntoIter<Query> {
                 let all: [Vec<Query>; [$($name),+].len()] =
                     [$(<$kind as Question>::every().into_iter().map(Query::from).collect()),+];
                 all.concat().into_iter()

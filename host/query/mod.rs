@@ -3,6 +3,7 @@
 //! None misses a contact. Solvers that can miss one are in [`research`](crate::research), with the
 //! choices of how candidates are found.
 
+mod bodies;
 pub(crate) mod certified;
 pub(crate) mod continuous;
 pub(crate) mod discrete;
@@ -16,6 +17,7 @@ pub(crate) mod solver;
 mod typed;
 pub(crate) mod volume;
 
+pub use bodies::{BodyDistances, BodyPairs};
 pub use continuous::{Continuous, Earliest};
 pub use discrete::Discrete;
 pub use distance::Distance;
@@ -48,12 +50,16 @@ kinds! {
     Near = "near",
     /// Distance of the nearest two bodies at t = 0, and the triangles that have it.
     Distance = "distance",
+    /// Pairs of bodies that share a point at t = 0.
+    BodyPairs = "body-pairs",
+    /// Least distance of each pair of bodies at t = 0, up to a limit, and the triangles that have it.
+    BodyDistances = "body-distances",
 }
 
 impl QueryKind {
     /// Returns its solvers, the default first.
     pub(crate) fn solvers(self) -> Vec<Solver> {
-        Query::every().filter(|query| query.kind() == self).map(|query| query.solver()).collect()
+        Query::of_every_kind().filter(|query| query.kind() == self).map(|query| query.solver()).collect()
     }
 }
 
@@ -89,6 +95,16 @@ impl Query {
     /// Returns a query for the distance of the nearest two bodies at t = 0.
     pub fn distance() -> Query {
         Distance::default().into()
+    }
+
+    /// Returns a query for the pairs of bodies that share a point at t = 0.
+    pub fn body_pairs() -> Query {
+        BodyPairs::default().into()
+    }
+
+    /// Returns a query for the least distance of each pair of bodies at t = 0, up to `within`.
+    pub fn body_distances(within: f64) -> Query {
+        BodyDistances::within(within).into()
     }
 }
 
@@ -193,6 +209,11 @@ impl Query {
         if let Query::Near(near) = &mut shape {
             near.distance = Near::DISTANCE;
         }
+        match &mut shape {
+            Query::BodyPairs(pairs) => pairs.first = None,
+            Query::BodyDistances(distances) => distances.within = BodyDistances::WITHIN,
+            _ => {}
+        }
         if let Some(certified) = shape.certified_mut() {
             let min_separation = if certified.is_apart() { 1.0 } else { 0.0 };
             *certified = Certified { min_separation, ..Certified::by(certified.precision) };
@@ -201,8 +222,12 @@ impl Query {
     }
 
     /// Returns whether it can read rigid and fixed bodies as instances of their meshes: a discrete
-    /// query by exact signs, without a choice of how candidates are found.
+    /// query by exact signs, without a choice of how candidates are found. A query of pairs of bodies
+    /// always does.
     pub(crate) fn may_read_instances(&self) -> bool {
+        if self.kind().is_of_bodies() {
+            return true;
+        }
         let Query::Discrete(Discrete { test: TriangleTest::Exact { .. }, search, .. }) = self else {
             return false;
         };

@@ -1,7 +1,9 @@
 //! Queries, each with a type of its own for the rows of its answer.
 
-use super::{Continuous, Discrete, Distance, Earliest, Near, Query};
-use crate::contacts::{Contact, FirstContact, NearPair, NearestTriangles, RowList, Rows, TrianglePair};
+use super::{BodyDistances, BodyPairs, Continuous, Discrete, Distance, Earliest, Near, Query};
+use crate::contacts::{
+    BodyPair, Contact, FirstContact, NearPair, NearestTriangles, RowList, Rows, TrianglePair,
+};
 
 mod sealed {
     pub trait Sealed {}
@@ -16,6 +18,8 @@ mod sealed {
 /// | [`Earliest`] | `Option<`[`FirstContact`]`>` |
 /// | [`Near`] | [`RowList`]`<`[`NearPair`]`>` |
 /// | [`Distance`] | `Option<`[`NearestTriangles`]`>` |
+/// | [`BodyPairs`] | [`RowList`]`<`[`BodyPair`]`>` |
+/// | [`BodyDistances`] | [`RowList`]`<`[`NearestTriangles`]`>` |
 /// | [`Query`] | [`Rows`]: of any of these |
 pub trait TypedQuery: Copy + Into<Query> + sealed::Sealed {
     /// Rows of its answer.
@@ -52,6 +56,9 @@ rows! {
         Rows::Earliest(toi) => toi.map(|toi| FirstContact { toi, is_undecided }), None, is_undecided;
     Near => RowList<NearPair>, Rows::Near(pairs) => pairs, RowList::default(), _is_undecided;
     Distance => Option<NearestTriangles>, Rows::Distance(nearest) => nearest, None, _is_undecided;
+    BodyPairs => RowList<BodyPair>, Rows::BodyPairs(pairs) => pairs, RowList::default(), _is_undecided;
+    BodyDistances => RowList<NearestTriangles>,
+        Rows::BodyDistances(nearest) => nearest, RowList::default(), _is_undecided;
 }
 
 impl sealed::Sealed for Query {}

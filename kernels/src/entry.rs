@@ -18,11 +18,13 @@ use crate::stage::fit::{bodies as fit_of_bodies, leaves as fit_of_leaves, rims, 
 use crate::stage::narrow::discrete::{Start, Still};
 use crate::stage::narrow::placed::Placed;
 use crate::stage::narrow::{
-    abreast, below_precision, bodies as narrow_bodies, certain, climb, cull, discrete, divide, features, near, nearest, separate,
-    slice, solve, turning,
+    abreast, below_precision, bodies as narrow_bodies, certain, climb, cull, discrete, divide, features,
+    near, nearest, separate, slice, solve, turning,
 };
 use crate::stage::refit::{levels, meshes as refit_of_meshes, tiles as refit_of_tiles, treelets};
-use crate::stage::traverse::instances::{nodes, relations, touching, triangles as instance_triangles, within};
+use crate::stage::traverse::instances::{
+    nodes, relations, touching, triangles as instance_triangles, within,
+};
 use crate::stage::traverse::{
     front, nearest as nearest_first, per_leaf, queue, steal, tile_triangles, tiles as tile_pairs,
 };

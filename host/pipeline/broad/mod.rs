@@ -17,7 +17,7 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::query::{BroadPhase, Query, WithVolume};
 use nearmiss_kernels::abi::{
-    BodyRecord, Counters, FilterArgs, InstanceTables, NodePair, Output, Pair, Positions, Relation, Span,
+    BodyRecord, Counters, InstanceTables, NodePair, Output, Pair, Positions, Relation, RelationWords, Span,
     TraverseFlags,
 };
 use nearmiss_kernels::bvh::Violation;
@@ -63,6 +63,8 @@ pub struct Placeable {
     pub relations: Span<Relation>,
     /// Pairs of tiles.
     pub tile_pairs: Span<NodePair>,
+    /// Words of each relation; empty except for queries of pairs of bodies.
+    pub words: RelationWords,
 }
 
 /// A range of the moving tiles, in units of 1/2^32 of their number. A pair belongs to the share
@@ -140,6 +142,9 @@ pub trait CandidateSearch<R: Precision>: Send {
     /// triangles. Returns whether the structure must be built again: true for fixed trees that
     /// were built with a smaller margin.
     fn set_margin(&mut self, margin: f32) -> bool;
+
+    /// Sets the numbers of another query of the same shape.
+    fn set(&mut self, _query: &Query) {}
 
     /// Fits the volumes of the triangles.
     ///
@@ -271,6 +276,20 @@ pub fn instance_phase<R: Precision>(
     layout: &Layout,
 ) -> Result<Box<dyn CandidateSearch<R>>, Error> {
     Ok(Box::new(instances::BodyGroups::new(device, layout)?))
+}
+
+/// Returns the broad phase of a query of pairs of bodies. At least one body moves. Boxes of bodies
+/// grow by `margin`.
+///
+/// # Errors
+/// Device errors.
+pub fn pair_phase<R: Precision>(
+    device: &Device,
+    layout: &Layout,
+    query: &Query,
+    margin: f32,
+) -> Result<Box<dyn CandidateSearch<R>>, Error> {
+    Ok(Box::new(instances::PairSearch::new(device, layout, query, margin)?))
 }
 
 /// Arguments for the constructors of broad phases.

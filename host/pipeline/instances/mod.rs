@@ -1,13 +1,16 @@
 //! Instances: bodies as meshes with poses. A mesh is on the device once, however many bodies have it.
 //! A body takes some 200 bytes, and no memory for a vertex or a triangle.
 
+mod deformed;
 mod mesh;
 
 use super::layout::Layout;
 use super::purpose;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
+use crate::pipeline::precision::Precision;
 use crate::scene::{Body, BodyKind, Pose};
+use deformed::{Deformed, deforms};
 use mesh::MeshTiles;
 use nearmiss_kernels::abi::{
     InstanceFrame, InstanceRecord, InstanceTables, MeshLeaf, MeshNode, MeshRecord, MeshTriangle, Point,
@@ -27,6 +30,8 @@ pub struct Instances {
     vertices: Buffer<Point<f64>>,
     poses: Buffer<PoseRecord>,
     tiles: u32,
+    /// Meshes that are refitted; `None` without a deformable body.
+    deformed: Option<Deformed>,
     /// Most levels of nodes above the tiles of a mesh.
     pub levels: u32,
     /// Poses on the host, the centre of each body's mesh, and its first vertex among all meshes'.
@@ -35,12 +40,16 @@ pub struct Instances {
     first_vertices: Vec<u32>,
 }
 
-/// Returns the body that first has the mesh of each body with triangles. Equal meshes are one.
+/// Returns the body that first has the mesh of each body with triangles. Equal meshes are one, except
+/// of deformable bodies.
 fn shared(bodies: &[Body]) -> Vec<Option<usize>> {
     let mut known: HashMap<u64, Vec<usize>> = HashMap::new();
     let same = |a: &Body, b: &Body| a.faces() == b.faces() && a.positions_t0() == b.positions_t0();
     let first = |(at, body): (usize, &Body)| {
         (body.face_count() > 0).then(|| {
+            if deforms(body) {
+                return at;
+            }
             let alike = known.entry(body.fingerprint()).or_default();
             match alike.iter().find(|&&other| same(&bodies[other], body)) {
                 Some(&other) => other,
@@ -90,11 +99,25 @@ impl Instances {
             vertices: of_meshes.upload(&all.vertices)?,
             poses: device.of(purpose::POSES).upload(&placed)?,
             tiles: all.tiles,
+            deformed: Deformed::new(device, bodies, layout, (&all, &records))?,
             levels: all.levels,
             centres: records.iter().map(|record| centre(record).unwrap_or_default()).collect(),
             first_vertices: records.iter().map(|record| first_vertex(record).unwrap_or_default()).collect(),
             placed,
         })
+    }
+
+    /// Returns whether some meshes are refitted.
+    pub fn deform(&self) -> bool {
+        self.deformed.is_some()
+    }
+
+    /// Refits the meshes of deformable bodies to positions of the scene.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn refit<R: Precision>(&self, device: &Device, positions: Span<Point<R>>) -> Result<(), Error> {
+        self.deformed.as_ref().map_or(Ok(()), |own| own.refit(device, self.tables(), positions))
     }
 
     /// Uploads the poses of all bodies.

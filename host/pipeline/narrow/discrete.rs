@@ -116,7 +116,7 @@ impl DiscreteNarrow {
         given: &NarrowContext<R>,
         placeable: &Placeable,
     ) -> Result<(), Error> {
-        let Placeable { tables, relations, tile_pairs } = *placeable;
+        let Placeable { tables, relations, tile_pairs, .. } = *placeable;
         let args = |pairs: Output<Pair>, uncertain: Output<Pair>| PlacedArgs {
             lists: DiscreteArgs {
                 frames: Positions { still: Span::EMPTY, moving: Span::EMPTY, turns: Span::EMPTY },

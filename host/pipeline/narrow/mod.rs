@@ -2,6 +2,7 @@
 //! none.
 
 mod answer;
+mod bodies;
 mod capacities;
 mod continuous;
 mod discrete;
@@ -29,6 +30,7 @@ use crate::device::{Ahead, Device};
 use crate::error::Error;
 use crate::query::Query;
 use crate::scene::Body;
+use bodies::BodiesNarrow;
 use distance::DistanceNarrow;
 use near::NearNarrow;
 use nearmiss_kernels::abi::{BodyRecord, BodyTolerance, Counters, Output, Pair, Point, Positions, Span};
@@ -167,6 +169,8 @@ pub fn narrow<R: Precision>(
         }
         Query::Near(query) => Box::new(NearNarrow::new(device, query.distance, few)?),
         Query::Distance(_) => Box::new(DistanceNarrow::new::<R>(device, few)?),
+        Query::BodyPairs(query) => Box::new(BodiesNarrow::pairs(device, query.first, few)?),
+        Query::BodyDistances(_) => Box::new(BodiesNarrow::distances(device, few)?),
     };
     if device.is_gpu() {
         narrow.order_on(device, layout, few / 4)?;

@@ -37,6 +37,15 @@ pub enum Listed<'a> {
     Near(Hits<'a, NearHit>),
     /// The nearest triangles: one pair, or none if no pair is tested.
     Nearest(View<'a, NearestHit>),
+    /// Pairs of bodies that share a point, in no order; `first` of them are wanted, if not all.
+    BodyPairs {
+        /// The pairs.
+        pairs: View<'a, Pair>,
+        /// How many.
+        first: Option<u32>,
+    },
+    /// The nearest triangles of each pair of bodies, in no order.
+    BodyDistances(View<'a, NearestHit>),
 }
 
 /// The results of a frame.
@@ -63,6 +72,8 @@ impl Found<'_> {
             Listed::Pairs(pairs) => pairs.unwritten() * size_of::<crate::contacts::TrianglePair>(),
             Listed::Hits { hits, .. } => hits.unwritten() * size_of::<crate::Contact>(),
             Listed::Earliest { .. } | Listed::Nearest(_) => 0,
+            Listed::BodyPairs { pairs, .. } => pairs.len() * size_of::<crate::contacts::BodyPair>(),
+            Listed::BodyDistances(all) => all.len() * size_of::<crate::contacts::NearestTriangles>(),
             Listed::Near(hits) => hits.unwritten() * size_of::<crate::contacts::NearPair>(),
         };
         bytes as u64

@@ -24,7 +24,10 @@ fn answers(bodies: &[Body], query: Query, device_orders: bool) -> Vec<Contacts> 
             Listed::Pairs(hits) => matches!(hits, Hits::Rows(_)),
             Listed::Hits { hits, .. } => matches!(hits, Hits::Rows(_)),
             Listed::Near(hits) => matches!(hits, Hits::Rows(_)),
-            Listed::Earliest { .. } | Listed::Nearest(_) => false,
+            Listed::Earliest { .. }
+            | Listed::Nearest(_)
+            | Listed::BodyPairs { .. }
+            | Listed::BodyDistances(_) => false,
         };
         assert_eq!(is_ordered, device_orders);
         collect(found, &query, &layout, &Looks::new(None)).expect("contacts")

@@ -114,10 +114,11 @@ impl<R: Precision> QueryMemory<R> {
     ///
     /// # Errors
     /// Device errors.
-    pub fn set(&mut self, scene: &SceneMemory<R>, parts: &QueryParts) -> Result<(), Error> {
+    pub fn set(&mut self, scene: &mut SceneMemory<R>, parts: &QueryParts) -> Result<(), Error> {
         self.narrow.set(&scene.device, &parts.query, &parts.tolerances)?;
         if self.query != parts.query {
             self.query = parts.query;
+            scene.broads[self.broad].phase.set(&parts.query);
             let before = self.demand.before;
             self.demand = Demand::new(&parts.query);
             self.demand.before = before;

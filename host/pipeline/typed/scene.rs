@@ -5,7 +5,9 @@ use super::Broad;
 use super::query::QueryMemory;
 use crate::device::{Buffer, Device, Event};
 use crate::error::Error;
-use crate::pipeline::broad::{BroadContext, CandidateSearch, broad_phase, growth, instance_phase};
+use crate::pipeline::broad::{
+    BroadContext, CandidateSearch, broad_phase, growth, instance_phase, pair_phase,
+};
 use crate::pipeline::instances::Instances;
 use crate::pipeline::list::List;
 use crate::pipeline::narrow::Features;
@@ -13,7 +15,7 @@ use crate::pipeline::placing::{Moved, Placing};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::purpose;
 use crate::pipeline::{Layout, QueryParts, SceneParts};
-use crate::query::{self, BoundingVolume, Query};
+use crate::query::{self, BoundingVolume, Query, QueryKind};
 use crate::scene::Body;
 use nearmiss_kernels::abi::{BodyRecord, FilterArgs, Pair, counter};
 
@@ -26,12 +28,17 @@ pub enum BroadKey {
     Trees(Query),
     /// Groups of bodies, which are instances of meshes.
     Instances,
+    /// The same with words of their relations: a query of pairs of bodies.
+    Bodies(QueryKind),
 }
 
 impl BroadKey {
     /// Returns the key of a query of that shape.
     fn of(shape: &Query, parts: &QueryParts, is_gpu: bool) -> BroadKey {
         let layout = &parts.layout;
+        if shape.kind().is_of_bodies() {
+            return BroadKey::Bodies(shape.kind());
+        }
         if parts.is_of_instances {
             return BroadKey::Instances;
         }
@@ -104,10 +111,11 @@ impl<R: Precision> SceneMemory<R> {
         if let Some(at) = self.broads.iter().position(|broad| broad.key == key) {
             return Ok(at);
         }
-        let phase = if key == BroadKey::Instances {
-            instance_phase(&self.device, layout)?
-        } else {
-            broad_phase(&self.device, layout, query, growth(query.listed_within()))?
+        let margin = growth(query.listed_within());
+        let phase = match key {
+            BroadKey::Instances => instance_phase(&self.device, layout)?,
+            BroadKey::Bodies(_) => pair_phase(&self.device, layout, query, margin)?,
+            BroadKey::Tiles(..) | BroadKey::Trees(_) => broad_phase(&self.device, layout, query, margin)?,
         };
         self.broads.push(Broad { key, phase, is_built: false });
         Ok(self.broads.len() - 1)
@@ -132,7 +140,9 @@ impl<R: Precision> SceneMemory<R> {
         if self.instances.is_none() {
             self.instances = Some(Instances::new(&self.device, bodies, layout)?);
         }
-        Ok(())
+        let deform = self.instances.as_ref().is_some_and(Instances::deform);
+        // Meshes that deform are refitted to vertices in the scene.
+        if deform { self.ready(true) } else { Ok(()) }
     }
 
     /// Readies positions for a query at one time, or in motion.

@@ -1,8 +1,8 @@
 //! Queries of pairs of bodies: words of a relation, and arguments of kernels.
 
 use super::{
-    InstanceTables, InstancesArgs, NearestHit, NodePair, NodesArgs, Output, Pair, Point,
-    Relation, RelationsArgs, Span,
+    InstanceTables, InstancesArgs, NearestHit, NodePair, NodesArgs, Output, Pair, Point, Relation,
+    RelationsArgs, Span,
 };
 use crate::math::Real;
 use bytemuck::Zeroable;

@@ -160,6 +160,10 @@ arguments! {
         tile: u32,
         /// The first node above groups.
         above: u32,
+        /// Growth of each box. Length.
+        margin: f32,
+        /// Zero.
+        pad: u32,
     }
     /// `traverse_relations`: pairs of bodies whose meshes may meet.
     RelationsArgs {

@@ -23,11 +23,11 @@
 //! `DISTANCE_ERROR = 192U` of their extent, which is below `2^-24 slack`. See [`farthest`] and
 //! [`apart`].
 
-use crate::abi::{RelationWords, Relation};
+use crate::abi::{Relation, RelationWords};
 use crate::bv::FrameBox;
+use crate::bvh::relation::Both;
 use crate::exec::Lane;
 use crate::math::{Real, round};
-use crate::bvh::relation::Both;
 use bytemuck::{Pod, Zeroable};
 
 /// Factor of squares that covers roundings of f32 and of frames: `1 + 2^-16`. Ratio.

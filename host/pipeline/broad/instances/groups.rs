@@ -33,6 +33,8 @@ pub struct Groups {
     filters: Buffer<NodeFilter>,
     whose: Buffer<NodeFilter>,
     has_fixed: bool,
+    /// Growth of each box of a part. Length.
+    margins: [f32; 2],
 }
 
 impl Groups {
@@ -63,7 +65,19 @@ impl Groups {
             filters,
             whose: of_filters.upload(&whose)?,
             has_fixed: false,
+            margins: [0.0; 2],
         })
+    }
+
+    /// Sets the growth of each box. Returns whether boxes of fixed bodies must be fitted again.
+    pub fn set_margin(&mut self, margin: f32) -> bool {
+        self.margins[MOVING] = margin;
+        // Fixed boxes keep the largest growth, so that queries with several limits take turns.
+        let grows = margin > self.margins[FIXED];
+        if grows {
+            (self.margins[FIXED], self.has_fixed) = (margin, false);
+        }
+        grows && self.bodies[FIXED] > 0
     }
 
     /// Puts bodies in order: environments, then along a curve through the centres. Fixed bodies are
@@ -134,6 +148,8 @@ impl Groups {
             nodes: self.nodes.span(),
             tile: self.levels.part(0, part, self.bodies[part]).first,
             above: above.first,
+            margin: self.margins[part],
+            pad: 0,
         };
         launch::blocks::<entry::fit_bodies>(device, above.count, &args)
     }

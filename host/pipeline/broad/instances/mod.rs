@@ -3,7 +3,10 @@
 //! Bodies take the place of triangles in the search of [`super::tiles`]: groups of 32 along a curve,
 //! and nodes above them. Pairs of bodies then go down both meshes, a launch a level.
 
+mod bodies;
 mod groups;
+
+pub use bodies::PairSearch;
 
 use super::tiles::walk;
 use super::{BroadContext, CandidateSearch, Candidates, Placeable, broken};
@@ -16,10 +19,11 @@ use crate::pipeline::launch;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::precision::Precision;
+use bytemuck::Zeroable;
 use groups::Groups;
 use nearmiss_kernels::abi::{
     Counters, InstanceTables, InstancesArgs, MESH_LEVELS, NodePair, NodesArgs, Output, Pair, Relation,
-    RelationsArgs, Span, TilePairsArgs, TileTrianglesArgs, TraverseFlags, counter,
+    RelationWords, RelationsArgs, Span, TilePairsArgs, TileTrianglesArgs, TraverseFlags, counter,
 };
 use nearmiss_kernels::bv::{Contain, FrameBox};
 use nearmiss_kernels::bvh::Violation;
@@ -127,6 +131,71 @@ impl BodyGroups {
         Ok(pairs)
     }
 
+    /// Lists pairs of bodies whose boxes overlap, and returns arguments to relate them.
+    fn relations_args<R: Precision>(
+        &mut self,
+        given: &BroadContext<R>,
+        counters: Counters,
+    ) -> Result<RelationsArgs, Error> {
+        let tables = given.instances.ok_or_else(without_instances)?.tables();
+        self.tables = Some(tables);
+        let pairs = self.pairs_of_bodies(given, counters)?;
+        Ok(RelationsArgs { tables, pairs, relations: self.relations.output(counters), counters })
+    }
+
+    /// Goes down the meshes of related bodies to pairs of tiles: `launch` a level.
+    fn descend<R: Precision>(
+        &mut self,
+        given: &BroadContext<R>,
+        of: &RelationsArgs,
+        launch: impl Fn(&NodesArgs) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        let instances: &Instances = given.instances.ok_or_else(without_instances)?;
+        let RelationsArgs { tables, relations, counters, .. } = *of;
+        let tile_pairs = self.tile_pairs.output(counters);
+        let (levels, mut pairs) = (instances.levels.max(1), Output::EMPTY);
+        debug_assert!(levels <= MESH_LEVELS);
+        for level in 0..levels {
+            // After the last level all are pairs of tiles.
+            let is_last = level + 1 == levels;
+            let next = if is_last {
+                Output::EMPTY
+            } else {
+                self.after_level(given.device, level as usize)?.output(counters)
+            };
+            launch(&NodesArgs { tables, relations, pairs, next, tile_pairs, counters })?;
+            pairs = next;
+        }
+        Ok(())
+    }
+
+    /// Returns arguments for the triangles of pairs of tiles.
+    fn instances_args(&self, of: &RelationsArgs, candidates: &Candidates) -> InstancesArgs {
+        let RelationsArgs { tables, relations, counters, .. } = *of;
+        let tile_pairs = self.tile_pairs.output(counters);
+        InstancesArgs { tables, relations, tile_pairs, pairs: candidates.pairs, counters }
+    }
+
+    fn all_lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
+        let mut all: Vec<&mut dyn GrowableOutput> =
+            vec![&mut self.group_pairs, &mut self.body_pairs, &mut self.relations, &mut self.tile_pairs];
+        all.extend(self.node_pairs.iter_mut().map(|list| list as &mut dyn GrowableOutput));
+        all
+    }
+
+    /// Returns what candidates refer to, with these words.
+    fn place(&self, words: RelationWords) -> Option<Placeable> {
+        let (relations, tile_pairs) = (self.relations.entries(), self.tile_pairs.entries());
+        self.tables.map(|tables| Placeable { tables, relations, tile_pairs, words })
+    }
+
+    /// Notes whether the order of bodies is stale, by a frame's counters.
+    fn count(&mut self, counters: &Counts) {
+        let pairs = self.group_pairs.demand(counters);
+        let first = *self.first.get_or_insert(pairs);
+        self.is_stale = pairs > first + first / 4 + STALE;
+    }
+
     /// Returns the pairs of nodes after a level, made if there are none.
     fn after_level(&mut self, device: &Device, level: usize) -> Result<&List<NodePair>, Error> {
         while self.node_pairs.len() <= level {
@@ -173,49 +242,23 @@ impl<R: Precision> CandidateSearch<R> for BodyGroups {
     }
 
     fn traverse(&mut self, given: &BroadContext<R>, candidates: &Candidates) -> Result<(), Error> {
-        let (device, counters) = (given.device, candidates.counters);
-        let instances: &Instances = given.instances.ok_or_else(without_instances)?;
-        let tables = instances.tables();
-        self.tables = Some(tables);
-        let pairs = self.pairs_of_bodies(given, counters)?;
-        let relations = self.relations.output(counters);
-        let args = RelationsArgs { tables, pairs, relations, counters };
+        let device = given.device;
+        let args = self.relations_args(given, candidates.counters)?;
         launch::striding::<entry::traverse_relations>(device, self.body_pairs.capacity(), &args)?;
-        let tile_pairs = self.tile_pairs.output(counters);
-        let (levels, mut pairs) = (instances.levels.max(1), Output::EMPTY);
-        debug_assert!(levels <= MESH_LEVELS);
-        for level in 0..levels {
-            // After the last level all are pairs of tiles.
-            let is_last = level + 1 == levels;
-            let next = if is_last {
-                Output::EMPTY
-            } else {
-                self.after_level(device, level as usize)?.output(counters)
-            };
-            let args = NodesArgs { tables, relations, pairs, next, tile_pairs, counters };
-            striding::<entry::traverse_nodes>(device, &args)?;
-            pairs = next;
-        }
-        let args = InstancesArgs { tables, relations, tile_pairs, pairs: candidates.pairs, counters };
-        striding::<entry::traverse_instances>(device, &args)
+        self.descend(given, &args, |args| striding::<entry::traverse_nodes>(device, args))?;
+        striding::<entry::traverse_instances>(device, &self.instances_args(&args, candidates))
     }
 
     fn lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
-        let mut all: Vec<&mut dyn GrowableOutput> =
-            vec![&mut self.group_pairs, &mut self.body_pairs, &mut self.relations, &mut self.tile_pairs];
-        all.extend(self.node_pairs.iter_mut().map(|list| list as &mut dyn GrowableOutput));
-        all
+        self.all_lists()
     }
 
     fn placeable(&self) -> Option<Placeable> {
-        let (relations, tile_pairs) = (self.relations.entries(), self.tile_pairs.entries());
-        self.tables.map(|tables| Placeable { tables, relations, tile_pairs })
+        self.place(RelationWords::zeroed())
     }
 
     fn finish(&mut self, counters: &Counts) -> Result<(), Error> {
-        let pairs = self.group_pairs.demand(counters);
-        let first = *self.first.get_or_insert(pairs);
-        self.is_stale = pairs > first + first / 4 + STALE;
+        self.count(counters);
         Ok(())
     }
 

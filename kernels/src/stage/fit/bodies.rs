@@ -5,7 +5,8 @@
 //! Writes   a frame and a box a body; groups; the node above them.
 //! Before   poses are finite, quaternions have length 1.
 //! After    frame = rows of the rotation, translation and placed centre.
-//!          box(body) ⊇ every placed vertex of a triangle of it, as [`super::super::place`] rounds it.
+//!          box(body) ⊇ every placed vertex of a triangle of it, as [`super::super::place`] rounds it,
+//!          and everything that is nearer to one than the margin, as computed.
 //!          Other volumes = merges, as after `fit_tiles`.
 //! Room     fixed; cannot run out.
 //! Cost     64 B a pose and 96 B a mesh (from cache) in; 160 B a body out. 150 operations in f64.
@@ -15,8 +16,8 @@ use crate::abi::{BodiesArgs, InstanceFrame, MeshRecord};
 use crate::bv::FrameBox;
 use crate::bvh::relation::size;
 use crate::exec::{Block, Lane};
-use crate::math::tolerance::PLACED_BOX;
-use crate::math::{Vec3, rigid, round};
+use crate::math::tolerance::{DISTANCE_CERTAIN, DISTANCE_UP, PLACED_BOX};
+use crate::math::{Real, Vec3, rigid, round};
 
 /// Places and boxes of bodies.
 pub fn bodies<B: Block>(block: &mut B, args: &BodiesArgs) {
@@ -42,13 +43,13 @@ pub fn bodies<B: Block>(block: &mut B, args: &BodiesArgs) {
         if first + lane.lane() < count {
             lane.write(args.tables.frames, body, frame);
         }
-        placed_box(&frame, &mesh)
+        placed_box(&frame, &mesh, args.margin)
     });
 }
 
-/// Around all placed vertices of a mesh, in f32.
+/// Around everything within a margin of a mesh's placed vertices, in f32.
 #[inline(always)]
-pub fn placed_box(frame: &InstanceFrame, mesh: &MeshRecord) -> FrameBox {
+pub fn placed_box(frame: &InstanceFrame, mesh: &MeshRecord, margin: f32) -> FrameBox {
     let middle = |k: usize| 0.5 * mesh.lo[k] + 0.5 * mesh.hi[k];
     let c = [middle(0), middle(1), middle(2)];
     let half = |k: usize| {
@@ -56,7 +57,10 @@ pub fn placed_box(frame: &InstanceFrame, mesh: &MeshRecord) -> FrameBox {
         if down > up { down } else { up }
     };
     let h = [half(0), half(1), half(2)];
-    let grown = PLACED_BOX * (mesh.radius + frame.far);
+    let scale = mesh.radius + frame.far;
+    // The computed distance may be below the true one, by a part of each body's coordinates.
+    let near = if margin > 0.0 { margin.wide() * DISTANCE_UP + DISTANCE_CERTAIN * scale } else { 0.0 };
+    let grown = PLACED_BOX * scale + near;
     let side = |k: usize| {
         let row = &frame.rows[k];
         let at = row[0] * c[0] + row[1] * c[1] + row[2] * c[2] + frame.origin[k];

@@ -122,12 +122,7 @@ impl<B: Block> Take<B> for Decide<'_, B> {
 /// Bodies that share a point, and candidates that signs do not decide.
 pub fn touching<B: Block>(block: &mut B, args: &TouchingArgs) {
     let word = block.shared::<u32>(4);
-    let mut decide = Decide {
-        args,
-        word,
-        meets: block.slot(false),
-        left: block.slot(None),
-        places: block.slot(0),
-    };
+    let mut decide =
+        Decide { args, word, meets: block.slot(false), left: block.slot(None), places: block.slot(0) };
     triangles(block, &args.of, &mut decide);
 }

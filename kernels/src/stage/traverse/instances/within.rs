@@ -66,9 +66,8 @@ pub fn bounds<B: Block>(block: &mut B, args: &NodesWithinArgs) {
                 let pair = if is_root { NodePair::zeroed() } else { of.pairs.get(lane, i) };
                 let number = if is_root { i } else { pair.relation };
                 let relation = of.relations.get(lane, number);
-                let root = |body: u32| {
-                    lane.read(of.tables.meshes, lane.read(of.tables.bodies, body).mesh).root
-                };
+                let root =
+                    |body: u32| lane.read(of.tables.meshes, lane.read(of.tables.bodies, body).mesh).root;
                 let [a, b] = if is_root { relation.bodies.map(root) } else { [pair.a, pair.b] };
                 let [a, b] = [a, b].map(|node| lane.read(of.tables.nodes, node).volume);
                 args.words.lower(lane, number, farthest(&relation, &a, &b));
