@@ -37,6 +37,13 @@ impl NearmissAnswer {
             Rows::Near(pairs) => Shown::Near(pairs.iter().map(Into::into).collect()),
             Rows::Earliest(_) => Shown::Earliest,
             Rows::Distance(_) => Shown::Nearest,
+            // `NearmissQuery` has no kind of these.
+            Rows::BodyPairs(_) | Rows::BodyDistances(_) => {
+                return Err(refused(
+                    format!("answer to a {} query has no C rows", found.query.kind()),
+                    "use the Rust library for pairs of bodies",
+                ));
+            }
         };
         let caveats = found.caveats().iter().map(sentence).collect();
         let (geometry, pairs) = (Vec::new(), Vec::new());

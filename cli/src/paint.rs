@@ -77,6 +77,15 @@ pub fn paint(
         Rows::Distance(all) => {
             all.iter().for_each(|n| pair(n.bodies.map(|body| body.index()), n.triangles));
         }
+        Rows::BodyDistances(all) => {
+            all.iter().for_each(|n| pair(n.bodies.map(|body| body.index()), n.triangles));
+        }
+        Rows::BodyPairs(all) => {
+            for body in all.iter().flat_map(|pair| pair.bodies).map(|body| body.index()) {
+                let (first, count) = (starts[body].1, bodies[body].face_count());
+                triangles[first..first + count].fill(RED);
+            }
+        }
         Rows::Contacts(all) => {
             for (contact, geometry) in all.iter().zip(geometry) {
                 met.add(geometry, contact.status == Status::Undecided, &starts);

@@ -71,6 +71,8 @@ impl FileFaces {
             // Weights are those of a triangle's corners: `args` allows no other names.
             Rows::Near(near) => Rows::Near(near.clone()),
             Rows::Distance(nearest) => Rows::Distance(*nearest),
+            Rows::BodyPairs(pairs) => Rows::BodyPairs(pairs.clone()),
+            Rows::BodyDistances(all) => Rows::BodyDistances(all.clone()),
         }
     }
 }

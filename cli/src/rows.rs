@@ -6,6 +6,8 @@
 //! | contacts | `kind`, `feature_a`, `feature_b`, `toi`, `toi_upper`, `status` |
 //! | near pairs | `kind`, `feature_a`, `feature_b`, `squared_distance`, `weight_0` to `weight_3`, `closest` |
 //! | the nearest triangles | `tri_a`, `tri_b`, `distance`, and the points `x_a` to `z_b` |
+//! | pairs of bodies | `body_a`, `body_b` alone |
+//! | distances of bodies | as the nearest triangles |
 //! | the first time | `earliest_toi` |
 //!
 //! Before these are `step` of a sequence, and `body_a`, `body_b` if there are several bodies.
@@ -39,7 +41,8 @@ impl Columns<'_> {
             Rows::Pairs(_) => (&triangles, true),
             Rows::Contacts(_) => (&CONTACT, true),
             Rows::Earliest(_) => (&["earliest_toi"], false),
-            Rows::Distance(_) => (&NEAREST, true),
+            Rows::Distance(_) | Rows::BodyDistances(_) => (&NEAREST, true),
+            Rows::BodyPairs(_) => (&[], true),
             // The weights are then those of the geometry.
             Rows::Near(_) if self.geometry.is_some() => (&NEAR_AND_GEOMETRY, true),
             Rows::Near(_) => (&NEAR, true),
@@ -75,6 +78,12 @@ impl Columns<'_> {
             }),
             Rows::Distance(found) => {
                 found.iter().try_for_each(|n| self.row(csv, Some(n.bodies), &nearest(n)))
+            }
+            Rows::BodyDistances(all) => {
+                all.iter().try_for_each(|n| self.row(csv, Some(n.bodies), &nearest(n)))
+            }
+            Rows::BodyPairs(pairs) => {
+                pairs.iter().try_for_each(|pair| self.row(csv, Some(pair.bodies), &[]))
             }
         };
         wrote.map_err(|e| e.to_string())
@@ -243,6 +252,10 @@ struct ContactPlace<'a> {
     normal: &'a [f64; 3],
 }
 
+/// A row that is its bodies.
+#[derive(Serialize)]
+struct Nothing {}
+
 #[derive(Serialize)]
 struct Triangles {
     triangles: [u32; 2],
@@ -296,10 +309,11 @@ impl Serialize for JsonRows<'_> {
                 self.placed(Some(at), c.bodies, row)
             })),
             Rows::Earliest(toi) => toi.serialize(to),
-            Rows::Distance(found) => to.collect_seq(found.iter().map(|nearest| {
-                let &NearestTriangles { bodies, triangles, distance, weights, points } = nearest;
-                self.placed(None, bodies, Nearest { triangles, distance, weights, points })
-            })),
+            Rows::Distance(found) => to.collect_seq(found.iter().map(|nearest| self.nearest(nearest))),
+            Rows::BodyDistances(all) => to.collect_seq(all.iter().map(|nearest| self.nearest(nearest))),
+            Rows::BodyPairs(pairs) => {
+                to.collect_seq(pairs.iter().map(|pair| self.placed(None, pair.bodies, Nothing {})))
+            }
             Rows::Near(near) => to.collect_seq(near.iter().enumerate().map(|(at, pair)| {
                 let row = Nearness {
                     kind: kind(pair.kind),
@@ -316,6 +330,12 @@ impl Serialize for JsonRows<'_> {
 }
 
 impl<'a> JsonRows<'a> {
+    /// A row of the nearest triangles of two bodies.
+    fn nearest(&self, nearest: &NearestTriangles) -> Placed<'a, Nearest> {
+        let NearestTriangles { bodies, triangles, distance, weights, points } = *nearest;
+        self.placed(None, bodies, Nearest { triangles, distance, weights, points })
+    }
+
     /// A row with the names of its bodies, and the place of contact `at`.
     fn placed<T>(&self, at: Option<usize>, bodies: [BodyId; 2], row: T) -> Placed<'a, T> {
         let [body_a, body_b] = bodies.map(|body| self.names.map(|names| names[body.index()].as_str()));

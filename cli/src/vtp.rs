@@ -63,8 +63,11 @@ impl Vtp {
                 );
             }
             Rows::Distance(Some(nearest)) => self.entries.push(of_triangles(step, nearest)),
-            // `args` refuses a time.
-            Rows::Distance(None) | Rows::Earliest(_) => {}
+            Rows::BodyDistances(all) => {
+                self.entries.extend(all.iter().map(|nearest| of_triangles(step, nearest)));
+            }
+            // `args` refuses a time, and pairs of bodies.
+            Rows::Distance(None) | Rows::BodyPairs(_) | Rows::Earliest(_) => {}
             Rows::Pairs(_) => self.meetings.get_or_insert_default().add(step, places),
         }
     }

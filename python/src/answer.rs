@@ -75,7 +75,11 @@ impl Answer {
             Rows::Earliest(Some(toi)) => format!("toi {toi}"),
             Rows::Distance(Some(nearest)) => format!("distance {}", nearest.distance),
             Rows::Earliest(None) | Rows::Distance(None) => "none".into(),
-            Rows::Pairs(_) | Rows::Contacts(_) | Rows::Near(_) => {
+            Rows::Pairs(_)
+            | Rows::Contacts(_)
+            | Rows::Near(_)
+            | Rows::BodyPairs(_)
+            | Rows::BodyDistances(_) => {
                 counted(slf.get().contacts.len() as u64, "row", "rows")
             }
         };

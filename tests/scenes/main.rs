@@ -1,5 +1,6 @@
 //! Scenes of many bodies: their kinds, places, filters and memories, on one device and on several.
 
+mod bodies;
 mod crossing;
 mod fans;
 mod geometry;

@@ -123,7 +123,7 @@ fn agrees(device: &Device, query: Query, frames: usize) -> usize {
 
 #[test]
 fn a_submitted_frame_is_the_frame() {
-    for kind in QueryKind::ALL {
+    for kind in support::asked::KINDS {
         for traversal in walks_of(kind).into_iter().filter(|walk| !walk.is_some_and(needs_the_host)) {
             for refit in [Refit::Levels, Refit::Treelets].map(Some) {
                 let query = query(kind).with_search(Search { traversal, refit, ..Search::default() });
@@ -132,7 +132,7 @@ fn a_submitted_frame_is_the_frame() {
         }
     }
     for order in ORDERS {
-        for kind in QueryKind::ALL {
+        for kind in support::asked::KINDS {
             assert!(agrees(&sanitizer(order), query(kind), 2) > 0, "{kind:?}");
         }
     }
@@ -171,7 +171,7 @@ fn a_walk_that_needs_the_host_is_refused() {
 /// Lists that were long enough once are too short now: the caller sees it, nothing is lost, and the next frame has room.
 #[test]
 fn what_outgrows_its_room_is_seen_and_answered() {
-    for kind in QueryKind::ALL {
+    for kind in support::asked::KINDS {
         let device = engine();
         let (mut scene, id, [t0, t1]) = pair(600);
         // Every triangle keeps its size, and goes to where its first corner is, so many times as far.
@@ -219,7 +219,7 @@ fn what_outgrows_its_room_is_seen_and_answered() {
 #[test]
 fn another_frame_is_noticed() {
     let (scene, id, [t0, t1]) = pair(120);
-    for kind in QueryKind::ALL {
+    for kind in support::asked::KINDS {
         let device = engine();
         let mut detector = OneQuery::new(device.clone(), scene.clone(), query(kind)).expect("a detector");
         let memory = [&t0, &t1].map(|points| Points::new(&device, points));

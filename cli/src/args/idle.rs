@@ -85,6 +85,13 @@ fn detect(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
         given.none_of(&["traversal"], "a distance has its own walk", "remove it")?;
         given.none_of(&["file_faces"], "the nearest points are weights of a triangle", "remove it")?;
     }
+    if query.body_pairs || query.body_distances.is_some() {
+        given.none_of(&OF_STEPS, "bodies at t = 0 have no such limit", of_steps)?;
+        let why = "pairs of bodies are tested, never one body";
+        let own = ["adjacent", "only_crossing", "no_self_collision"];
+        given.none_of(&own, why, "remove it, or use --discrete")?;
+        given.none_of(&["file_faces"], "rows name bodies, or triangles with weights", "remove it")?;
+    }
     if query.near.is_some() {
         given.none_of(&OF_STEPS, "the distances at t = 0 have no such limit", of_steps)?;
         let why = "features of adjacent triangles are always tested";

@@ -19,7 +19,7 @@ pub struct OutArgs {
     ///
     /// For rows of vertex-face and edge-edge pairs, in .csv and .json. Triangles at t = 0 get their kind
     /// (crossing, point, segment, overlap), both ends of their common segment, and the error of these.
-    #[arg(long, requires = "out", conflicts_with_all = ["file_faces", "earliest", "distance"])]
+    #[arg(long, requires = "out", conflicts_with_all = ["file_faces", "earliest", "distance", "body_pairs", "body_distances"])]
     pub geometry: bool,
     /// Name faces of the file in --out, not triangles; they count from 0
     #[arg(long, requires = "out", conflicts_with_all = ["scene", "earliest"])]

@@ -28,6 +28,18 @@ pub struct QueryArgs {
     /// The distance is 0 only if the bodies share a point. It takes two meshes or more.
     #[arg(long, conflicts_with_all = ["discrete", "continuous", "earliest", "near"])]
     pub distance: bool,
+    /// Find the pairs of bodies that share a point at t = 0
+    ///
+    /// A body is not tested against itself. It takes two meshes or more.
+    #[arg(long, conflicts_with_all = ["discrete", "continuous", "earliest", "near", "distance"])]
+    pub body_pairs: bool,
+    /// Find each two bodies within the distance L at t = 0, and where
+    ///
+    /// Each pair of bodies has a row: its least distance and the triangles that have it. The distance
+    /// is 0 only if the bodies share a point. It takes two meshes or more.
+    #[arg(long, value_name = "L", allow_hyphen_values = true,
+        conflicts_with_all = ["discrete", "continuous", "earliest", "near", "distance", "body_pairs"])]
+    pub body_distances: Option<f64>,
     /// Add a second mesh; give it twice for both ends of a step
     ///
     /// `--with B0 --with B1 A0 A1` and `A0 A1 --with B0 B1` are the same. Each mesh is tested against
@@ -49,7 +61,7 @@ pub struct QueryArgs {
     #[arg(long)]
     pub only_crossing: bool,
     /// Skip the count of triangles that cross at the start of the step
-    #[arg(long, conflicts_with_all = ["discrete", "near", "distance"])]
+    #[arg(long, conflicts_with_all = ["discrete", "near", "distance", "body_pairs", "body_distances"])]
     pub assume_free: bool,
     /// Merge vertices that coincide in all frames of a mesh
     #[arg(long)]

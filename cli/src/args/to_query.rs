@@ -47,11 +47,11 @@ impl DetectArgs {
         let query = self.of_kind(kind, solver);
         query.check()?;
         self.places(kind, solver.is_certain())?;
-        if self.query.adjacent && solver != Solver::Exact {
+        if self.query.adjacent && (solver != Solver::Exact || kind.is_of_bodies()) {
             let what = format!("--adjacent cannot be used with a {kind} query by {solver}");
             return refused(what, "use --discrete with the solver exact");
         }
-        if self.query.only_crossing && solver != Solver::Exact {
+        if self.query.only_crossing && (solver != Solver::Exact || kind.is_of_bodies()) {
             let what = format!("--only-crossing cannot be used with a {kind} query by {solver}");
             return refused(what, "use --discrete with the solver exact");
         }
@@ -63,7 +63,11 @@ impl DetectArgs {
         let assume_free = self.query.assume_free;
         let query: Query = match (self.query.near, ContinuousSolver::named(solver)) {
             _ if self.query.distance => Query::distance(),
+            _ if self.query.body_pairs => Query::body_pairs(),
             (Some(distance), _) => Query::near(distance),
+            _ if kind == QueryKind::BodyDistances => {
+                Query::body_distances(self.query.body_distances.unwrap_or_default())
+            }
             (None, Some(solver)) if kind == QueryKind::Earliest => {
                 Earliest::by(self.limited(solver)).assuming_free(assume_free).into()
             }
@@ -98,6 +102,10 @@ impl DetectArgs {
     fn places(&self, kind: QueryKind, is_certain: bool) -> Result<(), Error> {
         let vtp = self.writes_vtp();
         match kind {
+            QueryKind::BodyPairs if vtp || self.out.geometry => refused(
+                format!("a .vtp and --geometry need points, and a {kind} query has none"),
+                "use --discrete, or write .csv",
+            ),
             QueryKind::Earliest if vtp || self.out.geometry => refused(
                 format!("a .vtp and --geometry need points, and a {kind} query has none"),
                 "use --continuous or --near, or --out-mesh for a coloured mesh",
@@ -122,6 +130,8 @@ impl DetectArgs {
         match (query.discrete, query.continuous, query.earliest) {
             _ if query.near.is_some() => QueryKind::Near,
             _ if query.distance => QueryKind::Distance,
+            _ if query.body_pairs => QueryKind::BodyPairs,
+            _ if query.body_distances.is_some() => QueryKind::BodyDistances,
             (_, _, true) => QueryKind::Earliest,
             (_, true, _) => QueryKind::Continuous,
             (true, _, _) => QueryKind::Discrete,

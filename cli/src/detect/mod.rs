@@ -233,7 +233,7 @@ pub fn places(args: &DetectArgs, detector: &mut OneQuery, found: &Contacts) -> R
         Rows::Contacts(_) | Rows::Near(_) => is_written || args.out.out_mesh.is_some(),
         Rows::Pairs(_) => is_written,
         // A time has none; a file of the nearest triangles takes their points from the answer.
-        Rows::Earliest(_) | Rows::Distance(_) => false,
+        Rows::Earliest(_) | Rows::Distance(_) | Rows::BodyPairs(_) | Rows::BodyDistances(_) => false,
     };
     if !is_needed {
         return Ok(Places::default());

@@ -36,6 +36,13 @@ pub fn found(summary: &Summary) -> String {
         (QueryKind::Earliest, _) => summary
             .earliest_toi
             .map_or("no contact".into(), |toi| format!("first contact at t = {}", below(toi))),
+        (QueryKind::BodyPairs, _) => {
+            counted(summary.contacts as u64, "pair of bodies touches", "pairs of bodies touch")
+        }
+        (QueryKind::BodyDistances, _) => {
+            let within = summary.distance.map_or(String::new(), |distance| format!(" within {distance}"));
+            counted(summary.contacts as u64, "pair of bodies", "pairs of bodies") + &within
+        }
         (QueryKind::Near, _) => {
             let within = summary.distance.map_or(String::new(), |distance| format!(" within {distance}"));
             counted(summary.contacts as u64, "pair", "pairs") + &within

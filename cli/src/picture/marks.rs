@@ -18,6 +18,9 @@ pub fn of(
     if let Rows::Distance(nearest) = &found.rows {
         return nearest.iter().map(|nearest| nearest.points).collect();
     }
+    if let Rows::BodyDistances(all) = &found.rows {
+        return all.iter().take(MOST).map(|nearest| nearest.points).collect();
+    }
     if geometry.len() > MOST {
         return Vec::new();
     }

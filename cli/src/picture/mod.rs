@@ -57,7 +57,11 @@ pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
     let geometry = match &found.rows {
         Rows::Contacts(_) | Rows::Near(_) => detector.geometry(&found)?,
         // Triangles are coloured by their numbers.
-        Rows::Pairs(_) | Rows::Distance(_) | Rows::Earliest(_) => Geometry::default(),
+        Rows::Pairs(_)
+        | Rows::Distance(_)
+        | Rows::BodyPairs(_)
+        | Rows::BodyDistances(_)
+        | Rows::Earliest(_) => Geometry::default(),
     };
     let bodies = detector.scene().bodies();
     let triangles: usize = bodies.iter().map(|body| body.faces().len()).sum();

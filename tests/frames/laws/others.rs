@@ -22,7 +22,7 @@ fn rows(contacts: &Contacts, own: usize) -> Option<OwnRows> {
             OwnRows::Contacts(all.iter().filter(|row| is_own(&row.bodies)).copied().collect())
         }
         Rows::Near(all) => OwnRows::Near(all.iter().filter(|row| is_own(&row.bodies)).copied().collect()),
-        Rows::Earliest(_) | Rows::Distance(_) => return None,
+        Rows::Earliest(_) | Rows::Distance(_) | Rows::BodyPairs(_) | Rows::BodyDistances(_) => return None,
     })
 }
 

@@ -307,7 +307,7 @@ fn hunt(kind: QueryKind, seed: u64, is_planted: bool) -> Vec<String> {
 
 #[test]
 fn a_frame_is_its_positions() {
-    for kind in QueryKind::ALL {
+    for kind in support::asked::KINDS {
         for seed in 0..12 {
             let told = hunt(kind, seed, false);
             assert!(told.is_empty(), "{told:?}");
@@ -318,14 +318,14 @@ fn a_frame_is_its_positions() {
 /// A judge that does not move what rests disagrees, in every kind of query.
 #[test]
 fn a_body_that_does_not_rest_is_found_out() {
-    for kind in QueryKind::ALL {
+    for kind in support::asked::KINDS {
         assert!((0..4).any(|seed| !hunt(kind, seed, true).is_empty()), "{kind:?}");
     }
 }
 
 #[test]
 fn on_several_devices_too() {
-    for kind in QueryKind::ALL.into_iter().filter(|kind| kind.takes_traversals()) {
+    for kind in support::asked::KINDS.into_iter().filter(|kind| kind.takes_traversals()) {
         let mut rng = SmallRng::seed_from_u64(3);
         let mut told = Told::new(1, support::asked::at(kind, 1e-4, 0.05), false);
         let scene = told.detector.scene().clone();

@@ -125,7 +125,7 @@ fn bytes_of_a_scene() {
         let (vertices, triangles) = (count(Body::vertex_count), count(Body::face_count));
         let bodies = scene.bodies().len() as u64;
         let rigid: u64 = scene.bodies().iter().filter(|b| b.kind() == BodyKind::Rigid).count() as u64;
-        for motion in QueryKind::ALL.into_iter().filter(|&motion| asks(motion, bodies as usize)) {
+        for motion in support::asked::KINDS.into_iter().filter(|&motion| asks(motion, bodies as usize)) {
             let plan = plan(&scene, motion);
             let told = |what: &str, expected: u64| {
                 assert_eq!(bytes(&plan, what), expected, "{name}, {motion:?}, {what}");
@@ -198,7 +198,7 @@ fn what_is_left_out_is_told() {
         plan(scene, motion).left_out.iter().map(|left| left.what).collect()
     };
     let always = ["construction", "launch for the leaves", "balancing", "ordering on the device"];
-    for motion in QueryKind::ALL {
+    for motion in support::asked::KINDS {
         let mut of_query = always.to_vec();
         of_query.extend(motion.is_at_rest().then_some("positions at the end of the step"));
         of_query.extend(matches!(motion, QueryKind::Discrete | QueryKind::Distance).then_some("edges"));

@@ -55,7 +55,7 @@ fn a_row_is_the_motion_of_its_body() {
             by_each.update(&each).expect("moved");
             by_rows.update_pose_steps(&bodies, Poses::new(&p0, &q0), Poses::new(&p1, &q1)).expect("moved");
         }
-        for kind in QueryKind::ALL.into_iter().filter(|kind| frame != 1 || kind.is_at_rest()) {
+        for kind in support::asked::KINDS.into_iter().filter(|kind| frame != 1 || kind.is_at_rest()) {
             let query = query(kind);
             let [found, wanted] =
                 [&mut by_rows, &mut by_each].map(|own| own.query(&query).expect("an answer"));
@@ -105,7 +105,7 @@ fn rows_on_the_device_are_poses_there() {
     by_host.update_pose_steps(&bodies, Poses::new(&p0, &q0), Poses::new(&p1, &q1)).expect("moved");
     by_rows.update_pose_steps(&bodies, from.2, to.2).expect("moved");
     assert!(by_rows.scene().get(bodies[0]).expect("a body").is_device_resident());
-    for kind in QueryKind::ALL {
+    for kind in support::asked::KINDS {
         let query = query(kind);
         let [found, wanted] = [&mut by_rows, &mut by_host].map(|own| own.query(&query).expect("an answer"));
         assert_eq!(found.rows, wanted.rows, "{kind:?}");

@@ -21,7 +21,7 @@ fn prepared(
 #[test]
 fn a_vertex_that_is_no_point_is_named() {
     let (scene, id, [t0, t1]) = pair(60);
-    for kind in QueryKind::ALL {
+    for kind in support::asked::KINDS {
         for (value, what) in [(f32::NAN, "NaN"), (f32::INFINITY, "inf")] {
             let (mut memory, input, mut detector, good) = prepared(&scene, id, kind, [&t0, &t1]);
             let mut bad = t0.clone();
@@ -47,7 +47,7 @@ fn a_vertex_that_is_no_point_is_named() {
 #[test]
 fn a_frame_that_is_refused_on_a_cpu_moves_nothing() {
     let (scene, id, [t0, t1]) = pair(60);
-    for kind in QueryKind::ALL {
+    for kind in support::asked::KINDS {
         let device = engine();
         let mut bad = t1.clone();
         bad[17][1] = f32::NAN;
@@ -68,7 +68,7 @@ fn a_frame_that_is_refused_on_a_cpu_moves_nothing() {
 fn after_a_submission_that_is_refused_nothing_is_answered_of_its_bodies() {
     let (mut scene, id, [t0, t1]) = pair(60);
     let other = scene.add(Body::deformable(soup(20, 9).0));
-    for kind in QueryKind::ALL {
+    for kind in support::asked::KINDS {
         let (mut memory, _, mut detector, good) = prepared(&scene, id, kind, [&t0, &t1]);
         let mut bad = t0.clone();
         bad[17][1] = f32::NAN;
@@ -151,7 +151,7 @@ fn a_vertex_that_no_face_uses_is_not_looked_at() {
 fn coordinates_too_large_for_singles_become_doubles() {
     let (scene, id, ends) = pair(60);
     let large = ends.map(|points| points.iter().map(|p| p.map(|x| x * 1e25)).collect::<Vec<_>>());
-    for kind in QueryKind::ALL {
+    for kind in support::asked::KINDS {
         let device = engine();
         let memory = large.each_ref().map(|points| Points::new(&device, points));
         let mut detector = OneQuery::new(device, scene.clone(), query(kind)).expect("a detector");
@@ -209,7 +209,7 @@ fn a_pose_that_is_none_is_named() {
         [0.0, f32::NAN, 0.0, 0.0, 0.0, 0.0, 1.0],
         [0.0, 0.0, 0.0, 0.0, f32::INFINITY, 0.0, 1.0],
     ];
-    for kind in QueryKind::ALL {
+    for kind in support::asked::KINDS {
         let mut detector = OneQuery::new(device.clone(), scene.clone(), query(kind)).expect("a detector");
         // A query in motion takes both ends.
         let at_rest = kind.is_at_rest();

@@ -82,7 +82,7 @@ fn poses_on_the_device_are_poses() {
     let mut scene = Scene::new();
     let rigid = scene.add(Body::rigid(mesh));
     let cloth = scene.add(Body::deformable(soup(80, 6).0));
-    for kind in QueryKind::ALL {
+    for kind in support::asked::KINDS {
         let device = engine();
         let mut by_host = OneQuery::new(engine(), scene.clone(), query(kind)).expect("a detector");
         let mut detector = OneQuery::new(device.clone(), scene.clone(), query(kind)).expect("a detector");

@@ -11,7 +11,7 @@ fn queries() -> Vec<Query> {
         let all: &[f64] = if kind.is_at_rest() { &[1e-4] } else { &[1e-4, 1e-9, 1e-17, 0.0] };
         all.iter().map(move |&tolerance| support::asked::at(kind, tolerance, 0.02)).collect::<Vec<_>>()
     };
-    QueryKind::ALL.into_iter().flat_map(of).collect()
+    support::asked::KINDS.into_iter().flat_map(of).collect()
 }
 
 /// Each of them on the CPU and, with feature `cuda`, on the GPU.

@@ -116,7 +116,7 @@ fn queries() -> impl Iterator<Item = Query> {
         let search = Search { traversal: Some(Traversal::Queue(SMALL)), ..Search::default() };
         query(kind).with_search(search)
     };
-    QueryKind::ALL.into_iter().filter(|kind| kind.takes_traversals()).map(walked)
+    support::asked::KINDS.into_iter().filter(|kind| kind.takes_traversals()).map(walked)
 }
 
 /// Another schedule each launch, and the same ones each time that the test runs.

@@ -4,6 +4,15 @@ use nearmiss::Query;
 use nearmiss::query::{Continuous, Earliest, QueryKind};
 use nearmiss::research::{Certified, ContinuousSolver, QueryExt, Solver, WithSolver};
 
+/// Kinds that shares and submissions have: all but those of pairs of bodies.
+pub const KINDS: [QueryKind; 5] = [
+    QueryKind::Discrete,
+    QueryKind::Continuous,
+    QueryKind::Earliest,
+    QueryKind::Near,
+    QueryKind::Distance,
+];
+
 /// The query of a kind with all choices at their defaults. A near query has no default distance.
 pub fn of(kind: QueryKind) -> Query {
     match kind {
@@ -11,6 +20,7 @@ pub fn of(kind: QueryKind) -> Query {
         QueryKind::Continuous => Query::continuous(),
         QueryKind::Earliest => Query::earliest(),
         QueryKind::Distance => Query::distance(),
+        QueryKind::BodyPairs => Query::body_pairs(),
         other => panic!("a {other} query has no defaults"),
     }
 }
@@ -20,6 +30,7 @@ pub fn of(kind: QueryKind) -> Query {
 pub fn at(kind: QueryKind, tolerance: f64, distance: f64) -> Query {
     match kind {
         QueryKind::Near => Query::near(distance),
+        QueryKind::BodyDistances => Query::body_distances(distance),
         other => with_tolerance(of(other), tolerance),
     }
 }

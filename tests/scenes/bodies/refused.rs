@@ -1,0 +1,61 @@
+//! Refusals: each leaves the detector usable.
+
+use super::*;
+use nearmiss::error::Error;
+use nearmiss::research::{BoundingVolume, BroadPhase, QueryExt};
+use nearmiss::{MultiDetector, Query};
+
+/// Two boxes that touch.
+fn boxes() -> Vec<Body> {
+    vec![Body::rigid(cuboid([0.0; 3], [1.0; 3])), Body::rigid(cuboid([1.0; 3], [2.0; 3]))]
+}
+
+/// The text of a refusal by its arguments.
+fn refusal<T>(answer: Result<T, Error>) -> String {
+    match answer {
+        Err(error @ Error::InvalidArgument { .. }) => error.to_string(),
+        Err(error) => panic!("another error: {error}"),
+        Ok(_) => panic!("not refused"),
+    }
+}
+
+#[test]
+fn numbers_out_of_range_are_refused() {
+    let mut own = Detector::new(engine(), boxes()).expect("a detector");
+    for within in [-1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -f64::MIN_POSITIVE] {
+        let said = refusal(own.query(&BodyDistances::within(within)));
+        assert!(said.contains("finite and at least 0") && said.contains(&within.to_string()), "{said}");
+    }
+    let said = refusal(own.query(&BodyPairs::first(0)));
+    assert!(said.contains("at least 1, got 0"), "{said}");
+    assert_eq!(judged(&mut own, &[0.0]), Ok([1, 1]));
+}
+
+#[test]
+fn choices_of_a_search_are_refused() {
+    let mut own = Detector::new(engine(), boxes()).expect("a detector");
+    for query in [Query::body_pairs(), Query::body_distances(1.0)] {
+        for choice in [query.with_broad_phase(BroadPhase::Tree), query.with_volume(BoundingVolume::Linear)] {
+            let said = refusal(own.query(&choice));
+            assert!(said.contains("cannot be chosen") && said.contains(query.kind().name()), "{said}");
+        }
+        assert_eq!(own.query(&query).expect("an answer").len(), 1);
+    }
+}
+
+#[test]
+fn submissions_and_several_devices_are_refused() {
+    let mut own = Detector::new(engine(), boxes()).expect("a detector");
+    for query in [Query::body_pairs(), Query::body_distances(1.0)] {
+        let said = refusal(own.prepare(&[], &[query]));
+        assert!(said.contains("cannot be submitted"), "{said}");
+        assert_eq!(own.query(&query).expect("an answer").len(), 1);
+        let mut several = MultiDetector::new(vec![engine(), engine()], boxes()).expect("detectors");
+        let said = refusal(several.query(&query));
+        assert!(said.contains("divided among several devices"), "{said}");
+        assert!(!several.query(&Query::discrete()).expect("an answer").is_empty());
+    }
+    // A detector that has submitted answers these queries, too.
+    own.prepare(&[], &[Query::discrete()]).expect("prepared");
+    assert_eq!(judged(&mut own, &[0.0, 1.0]), Ok([1, 2]));
+}
