@@ -2,7 +2,9 @@
 
 use crate::error::{NearmissCode, NearmissError, call, free, given, refused};
 use crate::geometry::{NearmissGeometry, NearmissPairGeometry};
-use crate::records::{NearmissContact, NearmissNearPair, NearmissNearest, NearmissTrianglePair};
+use crate::records::{
+    NearmissBodyPair, NearmissContact, NearmissNearPair, NearmissNearest, NearmissTrianglePair,
+};
 use nearmiss::{Contacts, Error, Rows};
 use std::ffi::{CString, c_char};
 use std::mem::MaybeUninit;
@@ -25,11 +27,13 @@ enum Shown {
     Near(Vec<NearmissNearPair>),
     Earliest,
     Nearest,
+    BodyPairs(Vec<NearmissBodyPair>),
+    BodyDistances(Vec<NearmissNearest>),
 }
 
 impl NearmissAnswer {
     pub(crate) fn new(found: Contacts, peak: u64) -> Result<NearmissAnswer, Error> {
-        let bytes = found.len() as u64 * size_of::<NearmissNearPair>() as u64;
+        let bytes = found.len() as u64 * size_of::<NearmissNearest>() as u64;
         nearmiss::memory::require("the answer", bytes)?;
         let shown = match &found.rows {
             Rows::Pairs(pairs) => Shown::Pairs(pairs.iter().map(Into::into).collect()),
@@ -37,13 +41,8 @@ impl NearmissAnswer {
             Rows::Near(pairs) => Shown::Near(pairs.iter().map(Into::into).collect()),
             Rows::Earliest(_) => Shown::Earliest,
             Rows::Distance(_) => Shown::Nearest,
-            // `NearmissQuery` has no kind of these.
-            Rows::BodyPairs(_) | Rows::BodyDistances(_) => {
-                return Err(refused(
-                    format!("answer to a {} query has no C rows", found.query.kind()),
-                    "use the Rust library for pairs of bodies",
-                ));
-            }
+            Rows::BodyPairs(pairs) => Shown::BodyPairs(pairs.iter().map(Into::into).collect()),
+            Rows::BodyDistances(all) => Shown::BodyDistances(all.iter().map(Into::into).collect()),
         };
         let caveats = found.caveats().iter().map(sentence).collect();
         let (geometry, pairs) = (Vec::new(), Vec::new());
@@ -58,6 +57,8 @@ impl NearmissAnswer {
             Shown::Near(_) => ("a near", "nearmiss_answer_near_pairs"),
             Shown::Earliest => ("an earliest", "nearmiss_answer_earliest"),
             Shown::Nearest => ("a distance", "nearmiss_answer_nearest"),
+            Shown::BodyPairs(_) => ("a body-pairs", "nearmiss_answer_body_pairs"),
+            Shown::BodyDistances(_) => ("a body-distances", "nearmiss_answer_body_distances"),
         };
         refused(format!("answer to {query} query has no {rows}"), format!("call {call}"))
     }
@@ -156,6 +157,40 @@ pub extern "C" fn nearmiss_answer_nearest(
     })
 }
 
+/// Pairs of bodies that share a point, ascending by the first body, then by the second. The list
+/// lives as long as the answer.
+#[unsafe(no_mangle)]
+pub extern "C" fn nearmiss_answer_body_pairs(
+    answer: Option<&NearmissAnswer>,
+    items: Option<&mut MaybeUninit<*const NearmissBodyPair>>,
+    count: Option<&mut MaybeUninit<usize>>,
+    error: Option<&mut MaybeUninit<NearmissError>>,
+) -> NearmissCode {
+    call(error, || {
+        let answer = given(answer, "answer")?;
+        let Shown::BodyPairs(list) = &answer.shown else { return Err(answer.without("body pairs")) };
+        show(list, items, count)
+    })
+}
+
+/// The nearest triangles of each two bodies within the distance, in the order of the bodies. The
+/// list lives as long as the answer.
+#[unsafe(no_mangle)]
+pub extern "C" fn nearmiss_answer_body_distances(
+    answer: Option<&NearmissAnswer>,
+    items: Option<&mut MaybeUninit<*const NearmissNearest>>,
+    count: Option<&mut MaybeUninit<usize>>,
+    error: Option<&mut MaybeUninit<NearmissError>>,
+) -> NearmissCode {
+    call(error, || {
+        let answer = given(answer, "answer")?;
+        let Shown::BodyDistances(list) = &answer.shown else {
+            return Err(answer.without("distances of bodies"));
+        };
+        show(list, items, count)
+    })
+}
+
 /// Earliest time of contact of an earliest or a continuous query, in [0, 1]. No contact is earlier.
 /// If nothing collides, `is_any` is false and the time is 1. Triangles that cross at the start need
 /// not collide again: see `nearmiss_answer_is_free`.
@@ -181,8 +216,8 @@ pub extern "C" fn nearmiss_answer_earliest(
 
 /// Whether the answer proves that nothing touches. Continuous and earliest: the start was checked,
 /// no triangles share a point there, and nothing collides within the step. Discrete: no pair of
-/// triangles shares a point. Distance: it is above 0, or no two bodies may collide. Near: always
-/// false.
+/// triangles shares a point. Distance: it is above 0, or no two bodies may collide. Pairs of bodies:
+/// none shares a point. Distances of bodies: all are above 0. Near: always false.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_answer_is_free(
     answer: Option<&NearmissAnswer>,

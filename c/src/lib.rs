@@ -57,7 +57,7 @@ use std::ffi::c_char;
 
 /// The version of this header. It changes whenever a struct or a function changes. Compare it with
 /// `nearmiss_abi()` before any other call: a library of another version has other structs.
-pub const NEARMISS_ABI: u32 = 6;
+pub const NEARMISS_ABI: u32 = 7;
 
 /// The version of the header that this library was built with. This function and
 /// `nearmiss_version()` are the same in all versions.

@@ -5,7 +5,7 @@ use crate::error::refused;
 use crate::research::NearmissResearch;
 use nearmiss::query::Rebuild;
 use nearmiss::research::{QueryExt, TriangleTest, WithSolver};
-use nearmiss::{Error, Query};
+use nearmiss::{BodyPairs, Error, Query};
 
 /// Kinds of queries.
 #[allow(non_camel_case_types, reason = "as C sees them")]
@@ -26,6 +26,12 @@ pub enum NearmissQueryKind {
     /// Distance of the two nearest bodies, at the start of the step. Read it by
     /// `nearmiss_answer_nearest`.
     NEARMISS_DISTANCE = 4,
+    /// Pairs of bodies that share a point, at the start of the step. Read them by
+    /// `nearmiss_answer_body_pairs`.
+    NEARMISS_BODY_PAIRS = 5,
+    /// Least distance of each two bodies, at the start of the step. Set `distance`. Read them by
+    /// `nearmiss_answer_body_distances`.
+    NEARMISS_BODY_DISTANCES = 6,
 }
 
 /// When a detector rebuilds its tiles. No answer depends on it.
@@ -61,7 +67,10 @@ pub struct NearmissQuery {
     pub max_iterations: u32,
     /// A `NearmissRebuild`.
     pub rebuild: u32,
-    /// Near. Pairs up to this distance are listed, a length above 0.
+    /// Pairs of bodies. The first so many are listed; with 1 the work ends early. 0: all.
+    pub first: u32,
+    /// Near: pairs up to this distance are listed, a length above 0. Distances of bodies: those up
+    /// to this one, a length of at least 0.
     pub distance: f64,
     /// Continuous, earliest. Tolerance, a length: a time is early by at most what it takes to move
     /// that far. -1: the default, 1e-4 of the mean edge.
@@ -73,7 +82,8 @@ pub struct NearmissQuery {
     pub research: NearmissResearch,
 }
 
-/// A query of a `NearmissQueryKind` with defaults. Set `distance` of a near query.
+/// A query of a `NearmissQueryKind` with defaults. Set `distance` of a near query, and of one for
+/// distances of bodies.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_query(kind: u32) -> NearmissQuery {
     NearmissQuery {
@@ -83,6 +93,7 @@ pub extern "C" fn nearmiss_query(kind: u32) -> NearmissQuery {
         assume_free: 0,
         max_iterations: 0,
         rebuild: NearmissRebuild::NEARMISS_REBUILD_AUTO as u32,
+        first: 0,
         distance: 0.0,
         tolerance: -1.0,
         min_separation: 0.0,
@@ -102,6 +113,11 @@ impl NearmissQuery {
             2 => Query::earliest(),
             3 => Query::near(self.distance),
             4 => Query::distance(),
+            5 => match self.first {
+                0 => BodyPairs::default().into(),
+                first => BodyPairs::first(first).into(),
+            },
+            6 => Query::body_distances(self.distance),
             other => {
                 return Err(refused(
                     format!("kind of the query is unknown, got {other}"),
@@ -153,11 +169,13 @@ impl NearmissQuery {
             matches!(discrete.chosen(), TriangleTest::Exact { .. })
         };
         let (is_exact, is_certified) = (exact(query), query.certified().is_some());
-        let is_near = matches!(query, Query::Near(_));
+        let is_near = matches!(query, Query::Near(_) | Query::BodyDistances(_));
+        let is_listed = matches!(query, Query::BodyPairs(_));
         let idle = [
             ("adjacent", self.adjacent != 0 && !is_exact),
             ("only_crossing", self.only_crossing != 0 && !is_exact),
             ("assume_free", self.assume_free != 0 && query.kind().is_at_rest()),
+            ("first", self.first != 0 && !is_listed),
             ("distance", self.distance != 0.0 && !is_near),
             ("tolerance", self.tolerance != -1.0 && !is_certified),
             ("min_separation", self.min_separation != 0.0 && !is_certified),

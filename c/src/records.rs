@@ -1,7 +1,7 @@
 //! Rows of answers.
 
 use nearmiss::Contact;
-use nearmiss::contacts::{Closest, Kind, NearPair, NearestTriangles, Status, TrianglePair};
+use nearmiss::contacts::{BodyPair, Closest, Kind, NearPair, NearestTriangles, Status, TrianglePair};
 use nearmiss::scene::BodyId;
 
 /// Kinds of feature pairs.
@@ -98,6 +98,14 @@ pub struct NearmissNearPair {
     pub weights: [f64; 4],
 }
 
+/// Two bodies that share a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct NearmissBodyPair {
+    /// The bodies, the smaller number first.
+    pub bodies: [u32; 2],
+}
+
 /// The two nearest triangles of different bodies, and their nearest points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
@@ -159,6 +167,12 @@ impl From<&NearPair> for NearmissNearPair {
         let NearPair { kind, bodies, feature_a, feature_b, squared_distance, .. } = *pair;
         let (kind, bodies, weights) = (kind.into(), numbers(bodies), pair.weights());
         NearmissNearPair { kind, closest, bodies, feature_a, feature_b, squared_distance, weights }
+    }
+}
+
+impl From<&BodyPair> for NearmissBodyPair {
+    fn from(pair: &BodyPair) -> NearmissBodyPair {
+        NearmissBodyPair { bodies: numbers(pair.bodies) }
     }
 }
 

@@ -175,6 +175,7 @@ fn the_compiler_lays_out_the_same() {
         NearmissKind,
         NearmissMotion,
         NearmissMotionKind,
+        NearmissBodyPair,
         NearmissNearPair,
         NearmissNearest,
         NearmissNumber,

@@ -82,9 +82,7 @@ impl Columns<'_> {
             Rows::BodyDistances(all) => {
                 all.iter().try_for_each(|n| self.row(csv, Some(n.bodies), &nearest(n)))
             }
-            Rows::BodyPairs(pairs) => {
-                pairs.iter().try_for_each(|pair| self.row(csv, Some(pair.bodies), &[]))
-            }
+            Rows::BodyPairs(pairs) => pairs.iter().try_for_each(|pair| self.row(csv, Some(pair.bodies), &[])),
         };
         wrote.map_err(|e| e.to_string())
     }

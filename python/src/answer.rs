@@ -1,6 +1,7 @@
 //! Answers: a class for each class of queries. Columns are numpy arrays, made on first access.
 
 use crate::asked::Stamp;
+use crate::body_rows::{NearestBodies, TouchingBodies};
 use crate::columns::Columns;
 use crate::query::as_python;
 use crate::rows::{Contacts, FirstContact, NearPairs, NearestTriangles, TrianglePairs};
@@ -40,6 +41,8 @@ pub fn typed<'py>(
         QueryKind::Earliest => Bound::new(py, base.add_subclass(FirstContact))?.into_any(),
         QueryKind::Near => Bound::new(py, base.add_subclass(NearPairs))?.into_any(),
         QueryKind::Distance => Bound::new(py, base.add_subclass(NearestTriangles))?.into_any(),
+        QueryKind::BodyPairs => Bound::new(py, base.add_subclass(TouchingBodies))?.into_any(),
+        QueryKind::BodyDistances => Bound::new(py, base.add_subclass(NearestBodies))?.into_any(),
         _ => Bound::new(py, base)?.into_any(),
     })
 }
@@ -79,9 +82,7 @@ impl Answer {
             | Rows::Contacts(_)
             | Rows::Near(_)
             | Rows::BodyPairs(_)
-            | Rows::BodyDistances(_) => {
-                counted(slf.get().contacts.len() as u64, "row", "rows")
-            }
+            | Rows::BodyDistances(_) => counted(slf.get().contacts.len() as u64, "row", "rows"),
         };
         Ok(format!("<nearmiss.{}: {told}>", slf.get_type().name()?))
     }

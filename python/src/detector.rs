@@ -9,7 +9,9 @@ use crate::key::{self, Key, Pairs, body_of, numbers, pairs_of};
 use crate::on_device::DeviceAnswer;
 use crate::pairs::{Curves, PairGeometry};
 use crate::pose::Pose;
-use crate::query::{Accuracy, Query, discrete, iterations_of, near, queries_of};
+use crate::query::{
+    Accuracy, Query, body_distances, body_pairs, discrete, first_of, iterations_of, near, queries_of,
+};
 use crate::rows::TrianglePairs;
 use crate::scene::Body;
 use crate::turns::python;
@@ -170,6 +172,25 @@ impl Detector {
     /// Return the nearest two bodies at t = 0, and their distance: the answer to Distance.
     fn distance<'py>(&self, py: Python<'py>) -> Answered<'py> {
         self.answer_to(py, nearmiss::Query::distance())
+    }
+
+    /// Return pairs of bodies that share a point at t = 0: the answer to BodyPairs.
+    ///
+    /// - `first`: list the first pairs alone, at least 1. With 1 the work ends early. Default: all.
+    #[pyo3(signature = (*, first = None))]
+    fn body_pairs<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = first_of)] first: Option<u32>,
+    ) -> Answered<'py> {
+        self.answer_to(py, body_pairs(first)?)
+    }
+
+    /// Return the least distance of each two bodies at t = 0: the answer to BodyDistances.
+    ///
+    /// - `within`: largest distance of a row, a length of at least 0, in the unit of the vertices.
+    fn body_distances<'py>(&self, py: Python<'py>, within: f64) -> Answered<'py> {
+        self.answer_to(py, body_distances(within)?)
     }
 
     /// Return where the features or triangles of an answer's rows meet.

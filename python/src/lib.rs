@@ -6,6 +6,7 @@
 
 mod answer;
 mod asked;
+mod body_rows;
 mod borrowed;
 mod columns;
 mod detector;
@@ -38,6 +39,8 @@ mod _native {
     #[pymodule_export]
     use super::answer::Answer;
     #[pymodule_export]
+    use super::body_rows::{NearestBodies, TouchingBodies};
+    #[pymodule_export]
     use super::borrowed::is_on_gpu;
     #[pymodule_export]
     use super::detector::Detector;
@@ -56,7 +59,7 @@ mod _native {
     #[pymodule_export]
     use super::pose_step::PoseStep;
     #[pymodule_export]
-    use super::query::{Continuous, Discrete, Distance, Earliest, Near, Query};
+    use super::query::{BodyDistances, BodyPairs, Continuous, Discrete, Distance, Earliest, Near, Query};
     #[pymodule_export]
     use super::research::configure;
     #[pymodule_export]

@@ -7,7 +7,8 @@ use nearmiss::research::{Certified, QueryExt, TriangleTest, WithSolver};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple, PyType};
 
-/// Base class of all queries: Discrete, Continuous, Earliest, Near, Distance.
+/// Base class of all queries: Discrete, Continuous, Earliest, Near, Distance, BodyPairs,
+/// BodyDistances.
 ///
 /// A query is a value: it can be compared, hashed, copied and pickled. Each class of queries has an
 /// answer class of its own. Queries with other numbers use the same memory of a detector.
@@ -76,6 +77,8 @@ impl Query {
                 }
             }
             nearmiss::Query::Near(near) => numbers.set_item("distance", near.distance)?,
+            nearmiss::Query::BodyPairs(pairs) => set(&numbers, "first", pairs.first)?,
+            nearmiss::Query::BodyDistances(near) => numbers.set_item("within", near.within)?,
             _ => {}
         }
         if let Some(certified) = self.query.certified() {
@@ -123,6 +126,8 @@ pub fn as_python(py: Python<'_>, query: nearmiss::Query) -> PyResult<Bound<'_, P
         Q::Earliest(_) => Bound::new(py, base.add_subclass(Earliest))?.into_any(),
         Q::Near(_) => Bound::new(py, base.add_subclass(Near))?.into_any(),
         Q::Distance(_) => Bound::new(py, base.add_subclass(Distance))?.into_any(),
+        Q::BodyPairs(_) => Bound::new(py, base.add_subclass(BodyPairs))?.into_any(),
+        Q::BodyDistances(_) => Bound::new(py, base.add_subclass(BodyDistances))?.into_any(),
         _ => Bound::new(py, base)?.into_any(),
     })
 }
@@ -181,6 +186,19 @@ pub fn discrete(adjacent: bool, only_crossing: bool) -> PyResult<nearmiss::Query
 
 pub fn near(distance: f64) -> PyResult<nearmiss::Query> {
     checked(query::Near::within(distance))
+}
+
+pub fn first_of(given: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
+    Ok(optional(given, "first", [1, u32::MAX.into()])?.map(|first| first as u32))
+}
+
+pub fn body_pairs(first: Option<u32>) -> PyResult<nearmiss::Query> {
+    checked(first.map_or_else(query::BodyPairs::default, query::BodyPairs::first))
+}
+
+pub fn body_distances(within: f64) -> PyResult<nearmiss::Query> {
+    // Adding zero turns -0.0 into 0.0.
+    checked(query::BodyDistances::within(within + 0.0))
 }
 
 /// Query for triangles that share a point at t = 0, by exact signs. Answer: TrianglePairs.
@@ -274,6 +292,39 @@ impl Distance {
     #[new]
     fn new() -> PyResult<PyClassInitializer<Distance>> {
         Ok(PyClassInitializer::from(Query { query: nearmiss::Query::distance() }).add_subclass(Distance))
+    }
+}
+
+/// Query for pairs of bodies that share a point at t = 0, by exact signs. Answer: TouchingBodies.
+///
+/// - `first`: list the first pairs alone, at least 1. With 1 the work ends early. Default: all.
+///
+/// Pairs within a body do not count, even if it has self-collision.
+#[pyclass(module = "nearmiss", frozen, extends = Query)]
+pub struct BodyPairs;
+
+#[pymethods]
+impl BodyPairs {
+    #[new]
+    #[pyo3(signature = (*, first = None))]
+    fn new(#[pyo3(from_py_with = first_of)] first: Option<u32>) -> PyResult<PyClassInitializer<BodyPairs>> {
+        Ok(PyClassInitializer::from(Query { query: body_pairs(first)? }).add_subclass(BodyPairs))
+    }
+}
+
+/// Query for the least distance of each two bodies at t = 0. Answer: NearestBodies.
+///
+/// - `within`: largest distance of a row, a length of at least 0, in the unit of the vertices.
+///
+/// A distance is 0 if and only if the bodies share a point. A body has no distance from itself.
+#[pyclass(module = "nearmiss", frozen, extends = Query)]
+pub struct BodyDistances;
+
+#[pymethods]
+impl BodyDistances {
+    #[new]
+    fn new(within: f64) -> PyResult<PyClassInitializer<BodyDistances>> {
+        Ok(PyClassInitializer::from(Query { query: body_distances(within)? }).add_subclass(BodyDistances))
     }
 }
 

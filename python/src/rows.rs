@@ -9,7 +9,7 @@ use nearmiss::scene::BodyId;
 use numpy::{Element, PyArray1};
 use pyo3::prelude::*;
 
-type Column<'py> = PyResult<Bound<'py, PyAny>>;
+pub type Column<'py> = PyResult<Bound<'py, PyAny>>;
 
 /// A column of numbers that rows do not have.
 fn numbers<'py, T: Element>(
@@ -22,7 +22,7 @@ fn numbers<'py, T: Element>(
 }
 
 /// A column of a field: one number a row, or several.
-fn field<'py, T, E: Element, const N: usize>(
+pub fn field<'py, T, E: Element, const N: usize>(
     answer: &Bound<'py, Answer>,
     name: &'static str,
     rows: fn(&Rows) -> &[T],
@@ -33,7 +33,7 @@ fn field<'py, T, E: Element, const N: usize>(
 }
 
 /// The bodies of a row, as numbers: a `BodyId` is one.
-fn numbers_of(bodies: &[BodyId; 2]) -> *const u32 {
+pub fn numbers_of(bodies: &[BodyId; 2]) -> *const u32 {
     bodies.as_ptr().cast()
 }
 
@@ -42,7 +42,7 @@ fn indices(bodies: [BodyId; 2]) -> [u32; 2] {
 }
 
 /// Names of bodies, in the shape of these.
-fn names<'py>(answer: &Bound<'py, Answer>, bodies: Bound<'py, PyAny>) -> Column<'py> {
+pub fn names<'py>(answer: &Bound<'py, Answer>, bodies: Bound<'py, PyAny>) -> Column<'py> {
     let (py, own) = (answer.py(), answer.get());
     own.columns.get(py, "names", || {
         // Objects: a name is in memory once, however long it is.

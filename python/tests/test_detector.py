@@ -21,6 +21,9 @@ QUERIES = [
     nm.Discrete(),
     nm.Discrete(adjacent=True),
     nm.Distance(),
+    nm.BodyPairs(),
+    nm.BodyPairs(first=1),
+    nm.BodyDistances(0.3),
     nm.research.configure(nm.Discrete(), broad_phase="tree"),
 ]
 
@@ -101,6 +104,9 @@ def methods(detector):
     yield detector.discrete(adjacent=True), nm.Discrete(adjacent=True), nm.TrianglePairs
     yield detector.discrete(only_crossing=True), nm.Discrete(only_crossing=True), nm.TrianglePairs
     yield detector.distance(), nm.Distance(), nm.NearestTriangles
+    yield detector.body_pairs(), nm.BodyPairs(), nm.TouchingBodies
+    yield detector.body_pairs(first=1), nm.BodyPairs(first=1), nm.TouchingBodies
+    yield detector.body_distances(0.3), nm.BodyDistances(0.3), nm.NearestBodies
     yield detector.continuous(), nm.Continuous(), nm.Contacts
     yield detector.continuous(**accuracy), nm.Continuous(**accuracy), nm.Contacts
     yield detector.earliest(), nm.Earliest(), nm.FirstContact

@@ -30,6 +30,9 @@ def geometry(query):
 REFUSED = [
     (lambda: nm.Near(0), nm.InvalidArgumentError, "distance must be finite and above 0, got 0"),
     (lambda: nm.Near(np.nan), nm.InvalidArgumentError, "distance must be finite and above 0, got NaN"),
+    (lambda: nm.BodyPairs(first=0), nm.InvalidArgumentError, "first must be an integer from 1"),
+    (lambda: nm.BodyDistances(-1), nm.InvalidArgumentError, "distance must be finite and at least 0, got -1"),
+    (lambda: nm.BodyDistances(np.inf), nm.InvalidArgumentError, "distance must be finite and at least 0, got inf"),
     (lambda: nm.Continuous(min_separation=-1), nm.InvalidArgumentError, "min_separation must be finite and at least 0, got -1"),
     (lambda: configure(nm.Continuous(), solver="exact"), nm.InvalidArgumentError, 'has no solver "exact"; choose one of "certified"'),
     (lambda: configure(nm.Earliest(min_separation=1), solver="cubic-f64"), nm.InvalidArgumentError, '"cubic-f64" takes no'),

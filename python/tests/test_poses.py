@@ -27,6 +27,7 @@ def turned(angle, *translation):
 def hashes(own):
     """Of the answers to all queries."""
     queries = [nm.Discrete(), nm.Continuous(), nm.Earliest(), nm.Near(0.05), nm.Distance()]
+    queries += [nm.BodyPairs(), nm.BodyDistances(0.1)]
     return [own.query(query).hash for query in queries]
 
 

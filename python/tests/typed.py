@@ -20,6 +20,8 @@ matrix: NDArray[np.float64] = detector.pose(0).matrix
 first: nm.FirstContact = detector.earliest(min_separation=1e-3)
 triangles: nm.TrianglePairs = detector.query(nm.Discrete())
 nearest: nm.NearestTriangles = detector.step({0: nm.Pose()}, nm.Distance())
+touching: nm.TouchingBodies = detector.query(nm.BodyPairs(first=1))
+apart: nm.NearestBodies = detector.body_distances(0.1)
 slow: nm.Continuous = nm.research.configure(nm.Continuous(tolerance=1e-6), solver="cubic-f64")
 found = detector.query(slow)
 near = detector.collect(nm.Near(0.1))

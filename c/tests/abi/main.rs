@@ -1,6 +1,7 @@
 //! The functions as C calls them: answers are the library's, and bad arguments are refused.
 
 mod answers;
+mod bodies;
 mod interrupted;
 mod left_out;
 mod one_detector;

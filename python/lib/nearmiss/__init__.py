@@ -17,6 +17,8 @@ A detector keeps a scene on a device and answers any number of queries, with one
     triangles = detector.discrete()                            # TrianglePairs
     every = detector.continuous()                              # Contacts
     nearest = detector.distance()                              # NearestTriangles
+    touching = detector.body_pairs()                           # TouchingBodies
+    apart = detector.body_distances(0.1)                       # NearestBodies
     answer = detector.step({cloth: (x1, x2)}, nearmiss.Near(0.01))
 
 No contact is missed. Pairs that a solver cannot decide are reported as undecided, and limits of an answer as caveats. After
@@ -27,6 +29,8 @@ from . import research
 from ._native import (
     Answer,
     Body,
+    BodyDistances,
+    BodyPairs,
     Contacts,
     Continuous,
     Curves,
@@ -40,6 +44,7 @@ from ._native import (
     FirstContact,
     Geometry,
     Near,
+    NearestBodies,
     NearestTriangles,
     NearPairs,
     PairGeometry,
@@ -47,6 +52,7 @@ from ._native import (
     PoseStep,
     Query,
     Scene,
+    TouchingBodies,
     TrianglePairs,
     __version__,
     read_mesh,
@@ -67,6 +73,8 @@ from .shortcuts import contacts, near, self_intersections, time_of_impact
 __all__ = [
     "Answer",
     "Body",
+    "BodyDistances",
+    "BodyPairs",
     "Bug",
     "Closest",
     "Contacts",
@@ -89,6 +97,7 @@ __all__ = [
     "MeshWarning",
     "Near",
     "NearPairs",
+    "NearestBodies",
     "NearestTriangles",
     "NearmissError",
     "OutOfMemory",
@@ -99,6 +108,7 @@ __all__ = [
     "Query",
     "Scene",
     "Status",
+    "TouchingBodies",
     "TrianglePairs",
     "__version__",
     "contacts",

@@ -312,7 +312,8 @@ class Scene:
     def __len__(self) -> int: ...
 
 class Query(Generic[_A]):
-    """Base class of all queries: Discrete, Continuous, Earliest, Near, Distance.
+    """Base class of all queries: Discrete, Continuous, Earliest, Near, Distance, BodyPairs,
+    BodyDistances.
 
     A query is a value: it can be compared, hashed, copied and pickled. Each class of queries has an
     answer class of its own. Queries with other numbers use the same memory of a detector.
@@ -393,6 +394,26 @@ class Distance(Query["NearestTriangles"]):
     """
 
     def __new__(cls) -> Distance: ...
+
+class BodyPairs(Query["TouchingBodies"]):
+    """Query for pairs of bodies that share a point at t = 0, by exact signs. Answer: TouchingBodies.
+
+    - `first`: list the first pairs alone, at least 1. With 1 the work ends early. Default: all.
+
+    Pairs within a body do not count, even if it has self-collision.
+    """
+
+    def __new__(cls, *, first: int | None = None) -> BodyPairs: ...
+
+class BodyDistances(Query["NearestBodies"]):
+    """Query for the least distance of each two bodies at t = 0. Answer: NearestBodies.
+
+    - `within`: largest distance of a row, a length of at least 0, in the unit of the vertices.
+
+    A distance is 0 if and only if the bodies share a point. A body has no distance from itself.
+    """
+
+    def __new__(cls, within: float) -> BodyDistances: ...
 
 class Answer:
     """Base class of all answers.
@@ -585,6 +606,67 @@ class NearPairs(Answer):
     @property
     def undecided(self) -> int:
         """Number of rows so near to the distance that rounding decides about them."""
+
+class TouchingBodies(Answer):
+    """Answer of BodyPairs: bodies that share a point, a row a pair.
+
+    Rows ascend by the first body, then by the second.
+    """
+
+    def __len__(self) -> int: ...
+
+    @property
+    def bodies(self) -> NDArray[np.uint32]:
+        """(k, 2) uint32: both bodies, the smaller number first."""
+
+    @property
+    def names(self) -> NDArray[np.object_]:
+        """(k, 2) objects: names of both bodies."""
+
+    @property
+    def is_free(self) -> bool:
+        """Whether no two bodies share a point."""
+
+class NearestBodies(Answer):
+    """Answer of BodyDistances: the nearest triangles of each two bodies within the distance, a row a
+    pair of bodies.
+
+    Rows ascend by the first body, then by the second.
+    """
+
+    def __len__(self) -> int: ...
+
+    @property
+    def bodies(self) -> NDArray[np.uint32]:
+        """(k, 2) uint32: both bodies, the smaller number first."""
+
+    @property
+    def names(self) -> NDArray[np.object_]:
+        """(k, 2) objects: names of both bodies."""
+
+    @property
+    def triangles(self) -> NDArray[np.uint32]:
+        """(k, 2) uint32: the nearest triangles, by their indices in their bodies."""
+
+    @property
+    def distances(self) -> NDArray[np.float64]:
+        """(k,) float64: distances of the bodies: 0 if and only if they share a point."""
+
+    @property
+    def weights(self) -> NDArray[np.float64]:
+        """(k, 2, 3) float64: weights of the three corners of each triangle in its nearest point."""
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """(k, 2, 3) float64: the nearest point of each triangle, in the unit of the vertices."""
+
+    @property
+    def min_distance(self) -> float | None:
+        """Least of the distances; None without rows."""
+
+    @property
+    def is_free(self) -> bool:
+        """Whether no two bodies share a point."""
 
 class NearestTriangles(Answer):
     """Answer of Distance: the nearest two triangles of different bodies.
@@ -927,6 +1009,18 @@ class Detector:
 
     def distance(self) -> NearestTriangles:
         """Return the nearest two bodies at t = 0, and their distance: the answer to Distance."""
+
+    def body_pairs(self, *, first: int | None = None) -> TouchingBodies:
+        """Return pairs of bodies that share a point at t = 0: the answer to BodyPairs.
+
+        - `first`: list the first pairs alone, at least 1. With 1 the work ends early. Default: all.
+        """
+
+    def body_distances(self, within: float) -> NearestBodies:
+        """Return the least distance of each two bodies at t = 0: the answer to BodyDistances.
+
+        - `within`: largest distance of a row, a length of at least 0, in the unit of the vertices.
+        """
 
     @overload
     def geometry(self, answer: Contacts | NearPairs) -> Geometry:

@@ -248,7 +248,9 @@ fn renumbered(bodies: &[Placed], contacts: &Contacts) -> Rows {
         Rows::Near(all) => all.iter_mut().for_each(|row| row.bodies = row.bodies.map(place)),
         Rows::Distance(nearest) => nearest.iter_mut().for_each(|row| row.bodies = row.bodies.map(place)),
         Rows::BodyPairs(all) => all.to_mut().iter_mut().for_each(|row| row.bodies = row.bodies.map(place)),
-        Rows::BodyDistances(all) => all.to_mut().iter_mut().for_each(|row| row.bodies = row.bodies.map(place)),
+        Rows::BodyDistances(all) => {
+            all.to_mut().iter_mut().for_each(|row| row.bodies = row.bodies.map(place))
+        }
         Rows::Earliest(_) => {}
     }
     answer

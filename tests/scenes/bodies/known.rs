@@ -39,7 +39,8 @@ fn a_limit_at_the_distance_itself_lists_it() {
         Body::rigid(cuboid([0.0; 3], [1.0; 3])),
         Body::rigid(cuboid([1.25, 0.0, 0.0], [2.0, 1.0, 1.0])),
     ]);
-    let count = |own: &mut Detector, within: f64| own.query(&BodyDistances::within(within)).expect("rows").len();
+    let count =
+        |own: &mut Detector, within: f64| own.query(&BodyDistances::within(within)).expect("rows").len();
     assert_eq!(count(&mut own, 0.25), 1);
     assert_eq!(count(&mut own, 0.25_f64.next_down()), 0);
     assert_eq!(count(&mut own, f64::MAX), 1);

@@ -62,7 +62,8 @@ impl Next {
                 }
                 BodyKind::Deformable => {
                     let by = [(); 3].map(|()| rng.random_range(-0.5..0.5));
-                    let new = |p: &[f64; 3]| [0, 1, 2].map(|k| p[k] + by[k] + 0.05 * (7.0 * p[(k + 1) % 3]).sin());
+                    let new =
+                        |p: &[f64; 3]| [0, 1, 2].map(|k| p[k] + by[k] + 0.05 * (7.0 * p[(k + 1) % 3]).sin());
                     let at = body.positions_t0().to_f64();
                     points.push((id, Positions::F64(at.iter().map(new).collect())));
                 }
@@ -145,7 +146,9 @@ fn every_machine_has_the_same_rows() {
             hashes
         };
         let expected = answers(engine());
-        assert!(expected.iter().all(|(pairs, first, near)| pairs.len() > 1 && first.len() == 1 && near.len() > 5));
+        assert!(
+            expected.iter().all(|(pairs, first, near)| pairs.len() > 1 && first.len() == 1 && near.len() > 5)
+        );
         for order in ORDERS {
             let device = Emulator::new(Mode::Sanitizer(order), None).expect("threads");
             assert_eq!(answers(Device::emulator(device)), expected, "{order:?}");

@@ -5,13 +5,8 @@ use nearmiss::query::{Continuous, Earliest, QueryKind};
 use nearmiss::research::{Certified, ContinuousSolver, QueryExt, Solver, WithSolver};
 
 /// Kinds that shares and submissions have: all but those of pairs of bodies.
-pub const KINDS: [QueryKind; 5] = [
-    QueryKind::Discrete,
-    QueryKind::Continuous,
-    QueryKind::Earliest,
-    QueryKind::Near,
-    QueryKind::Distance,
-];
+pub const KINDS: [QueryKind; 5] =
+    [QueryKind::Discrete, QueryKind::Continuous, QueryKind::Earliest, QueryKind::Near, QueryKind::Distance];
 
 /// The query of a kind with all choices at their defaults. A near query has no default distance.
 pub fn of(kind: QueryKind) -> Query {
