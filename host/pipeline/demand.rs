@@ -7,8 +7,7 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::memory;
 use crate::query::{ListedRows, Query, QueryKind};
-use crate::scene::CollisionFilter;
-use nearmiss_kernels::abi::{BodyRecord, Counter, EVERY, counter};
+use nearmiss_kernels::abi::{Counter, counter};
 
 /// Least size in bytes of an answer that is compared with free memory.
 const LITTLE: u64 = 16 << 20;

@@ -17,8 +17,8 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::query::{BroadPhase, Query, WithVolume};
 use nearmiss_kernels::abi::{
-    BodyRecord, Counters, InstanceTables, NodePair, Output, Pair, Positions, Relation, RelationWords, Span,
-    TraverseFlags,
+    BodyRecord, Counters, FilterArgs, InstanceTables, NodePair, Output, Pair, Positions, Relation,
+    RelationWords, Span, TraverseFlags,
 };
 use nearmiss_kernels::bvh::Violation;
 use nearmiss_kernels::entry::Kernels;
