@@ -25,6 +25,7 @@ mod pose;
 mod pose_step;
 mod poses;
 mod query;
+mod questions;
 mod research;
 mod rows;
 mod scene;

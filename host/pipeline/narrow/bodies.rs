@@ -6,6 +6,7 @@ use crate::device::{Ahead, Device};
 use crate::error::Error;
 use crate::pipeline::counts::Counts;
 use crate::pipeline::launch;
+use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{GrowableOutput, List, Named};
 use crate::pipeline::order::Ordering;
 use crate::pipeline::precision::Precision;
@@ -134,7 +135,7 @@ impl<R: Precision> Narrow<R> for BodiesNarrow {
         Vec::new()
     }
 
-    fn place(&mut self, _: &[Body]) {}
+    fn place(&mut self, _: &[Body], _: &Layout) {}
 
     /// The host orders rows: a pair of bodies has one.
     fn ordering(&mut self) -> Option<&mut dyn Ordering> {
