@@ -68,7 +68,9 @@ fn main() -> Result<(), Error> {
     let mut bodies = Scene::new();
     (0..BODIES).for_each(|_| _ = bodies.add(Body::rigid(mesh.clone())));
     let free = Query::from(Continuous::default().assuming_free(true));
-    for query in [Query::discrete(), Query::continuous(), free, Query::near(0.02), Query::distance()] {
+    let of_bodies = [Query::body_pairs(), Query::body_distances(0.02), Query::body_distances(0.5)];
+    let others = [Query::discrete(), Query::continuous(), free, Query::near(0.02), Query::distance()];
+    for query in others.into_iter().chain(of_bodies) {
         let mut detector = OneQuery::new(device.clone(), bodies.clone(), query)?;
         let ids: Vec<BodyId> = detector.scene().ids().collect();
         for built in ["as added", "after a rebuild"] {
