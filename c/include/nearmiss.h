@@ -51,7 +51,7 @@
 
 // The version of this header. It changes whenever a struct or a function changes. Compare it with
 // `nearmiss_abi()` before any other call: a library of another version has other structs.
-#define NEARMISS_ABI 6
+#define NEARMISS_ABI 7
 
 // Bytes of an error's text.
 #define NEARMISS_TEXT 1016
@@ -338,6 +338,12 @@ enum NearmissQueryKind
     // Distance of the two nearest bodies, at the start of the step. Read it by
     // `nearmiss_answer_nearest`.
     NEARMISS_DISTANCE = 4,
+    // Pairs of bodies that share a point, at the start of the step. Read them by
+    // `nearmiss_answer_body_pairs`.
+    NEARMISS_BODY_PAIRS = 5,
+    // Least distance of each two bodies, at the start of the step. Set `distance`. Read them by
+    // `nearmiss_answer_body_distances`.
+    NEARMISS_BODY_DISTANCES = 6,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -457,6 +463,12 @@ typedef struct {
     double points[2][3];
 } NearmissNearest;
 
+// Two bodies that share a point.
+typedef struct {
+    // The bodies, the smaller number first.
+    uint32_t bodies[2];
+} NearmissBodyPair;
+
 // Rows of numbers, such as positions of three numbers a row. Gaps between rows are not read.
 typedef struct {
     // The first number, aligned; of memory of a device its address there. NULL for no rows.
@@ -570,7 +582,10 @@ typedef struct {
     uint32_t max_iterations;
     // A `NearmissRebuild`.
     uint32_t rebuild;
-    // Near. Pairs up to this distance are listed, a length above 0.
+    // Pairs of bodies. The first so many are listed; with 1 the work ends early. 0: all.
+    uint32_t first;
+    // Near: pairs up to this distance are listed, a length above 0. Distances of bodies: those up
+    // to this one, a length of at least 0.
     double distance;
     // Continuous, earliest. Tolerance, a length: a time is early by at most what it takes to move
     // that far. -1: the default, 1e-4 of the mean edge.
@@ -820,6 +835,20 @@ NearmissCode nearmiss_answer_nearest(const NearmissAnswer *answer,
                                      NearmissNearest *nearest,
                                      NearmissError *error);
 
+// Pairs of bodies that share a point, ascending by the first body, then by the second. The list
+// lives as long as the answer.
+NearmissCode nearmiss_answer_body_pairs(const NearmissAnswer *answer,
+                                        const NearmissBodyPair **items,
+                                        size_t *count,
+                                        NearmissError *error);
+
+// The nearest triangles of each two bodies within the distance, in the order of the bodies. The
+// list lives as long as the answer.
+NearmissCode nearmiss_answer_body_distances(const NearmissAnswer *answer,
+                                            const NearmissNearest **items,
+                                            size_t *count,
+                                            NearmissError *error);
+
 // Earliest time of contact of an earliest or a continuous query, in [0, 1]. No contact is earlier.
 // If nothing collides, `is_any` is false and the time is 1. Triangles that cross at the start need
 // not collide again: see `nearmiss_answer_is_free`.
@@ -830,8 +859,8 @@ NearmissCode nearmiss_answer_earliest(const NearmissAnswer *answer,
 
 // Whether the answer proves that nothing touches. Continuous and earliest: the start was checked,
 // no triangles share a point there, and nothing collides within the step. Discrete: no pair of
-// triangles shares a point. Distance: it is above 0, or no two bodies may collide. Near: always
-// false.
+// triangles shares a point. Distance: it is above 0, or no two bodies may collide. Pairs of bodies:
+// none shares a point. Distances of bodies: all are above 0. Near: always false.
 NearmissCode nearmiss_answer_is_free(const NearmissAnswer *answer,
                                      bool *is_free,
                                      NearmissError *error);
@@ -933,6 +962,37 @@ NearmissCode nearmiss_detector_replace(NearmissDetector *detector,
 NearmissCode nearmiss_detector_remove(NearmissDetector *detector,
                                       uint32_t id,
                                       NearmissError *error);
+
+// Replaces the list of pairs of bodies that are not tested against each other, by any query: as
+// the links of a robot that share a joint. `pairs` has `count` pairs, two numbers of bodies each.
+// Order and repeats do not matter; a count of 0 leaves out none.
+//
+// Fails with `NEARMISS_INVALID_ARGUMENT` for a body that is not in the scene, for a body with
+// itself, and for a scene of which a detector has a copy. Then the list is as before.
+//
+// # Safety
+// `pairs` points to that many numbers.
+NearmissCode nearmiss_scene_leave_out(NearmissScene *scene,
+                                      const uint32_t *pairs,
+                                      size_t count,
+                                      NearmissError *error);
+
+// As `nearmiss_scene_leave_out`, from the next query on, which rebuilds. A removed body takes its
+// pairs with it, a replaced one keeps them. Another list ends the preparation of submissions.
+//
+// # Safety
+// `pairs` points to that many numbers.
+NearmissCode nearmiss_detector_leave_out(NearmissDetector *detector,
+                                         const uint32_t *pairs,
+                                         size_t count,
+                                         NearmissError *error);
+
+// Writes the pairs of bodies that are left out, two numbers each: the smaller one first, ascending.
+// They live until a call changes the bodies or the list.
+NearmissCode nearmiss_detector_left_out(NearmissDetector *detector,
+                                        const uint32_t **pairs,
+                                        size_t *count,
+                                        NearmissError *error);
 
 // The exit status of the command line for a code: 0 success, 2 invalid argument, 3 invalid input,
 // 130 interrupted, 4 all others.
@@ -1180,7 +1240,8 @@ NearmissCode nearmiss_detector_download_positions(NearmissDetector *detector,
                                                   size_t vertex_count,
                                                   NearmissError *error);
 
-// A query of a `NearmissQueryKind` with defaults. Set `distance` of a near query.
+// A query of a `NearmissQueryKind` with defaults. Set `distance` of a near query, and of one for
+// distances of bodies.
 NearmissQuery nearmiss_query(uint32_t kind);
 
 // `count` rows of floats without gaps: points of three, or quaternions of four.

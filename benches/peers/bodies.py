@@ -1,0 +1,220 @@
+"""Many rigid bodies: which touch, and how far apart the near ones are, by nearmiss, Coal and FCL. See README.md.
+
+    python bodies.py [--bodies N] [--frames N] [--threads N] [--out FILE.csv]
+"""
+
+import argparse
+import csv
+import statistics
+import sys
+import time
+
+import coal
+import fcl
+import nearmiss
+import numpy as np
+
+MESHES, SIDES = 10, (44, 22)
+BOX, STEP, WITHIN = 16.0, 0.02, (0.02, 0.1)
+
+
+def bumpy(seed):
+    """A sphere with bumps: vertices and triangles."""
+    rng = np.random.default_rng(seed)
+    columns, rows = SIDES
+    u = np.arange(columns) * (2 * np.pi / columns)
+    v = np.arange(1, rows) * (np.pi / rows)
+    size = 0.5 * rng.uniform(0.8, 1.2)
+    depth, waves = rng.uniform(0.03, 0.12), rng.integers(2, 6, 2)
+    radius = size * (1 + depth * np.outer(np.sin(waves[0] * v), np.cos(waves[1] * u)))
+    ring = radius[..., None] * np.stack(
+        [np.outer(np.sin(v), np.cos(u)), np.outer(np.sin(v), np.sin(u)), np.outer(np.cos(v), np.ones(columns))], -1
+    )
+    points = np.concatenate([ring.reshape(-1, 3), [[0, 0, size], [0, 0, -size]]])
+    top, bottom = len(points) - 2, len(points) - 1
+    at = lambda row, column: row * columns + column % columns
+    faces = []
+    for column in range(columns):
+        faces += [[top, at(0, column), at(0, column + 1)], [bottom, at(rows - 2, column + 1), at(rows - 2, column)]]
+        for row in range(rows - 2):
+            a, b, c, d = at(row, column), at(row + 1, column), at(row + 1, column + 1), at(row, column + 1)
+            faces += [[a, b, c], [a, c, d]]
+    return points, np.array(faces, np.uint32)
+
+
+def poses(count, frames):
+    """Positions and quaternions (x, y, z, w) of all bodies, frame by frame."""
+    rng = np.random.default_rng(1)
+    place = rng.uniform(0, BOX, (count, 3))
+    speed = rng.normal(0, STEP, (count, 3))
+    turn = rng.normal(size=(count, 4))
+    spin = rng.normal(0, STEP, (count, 4))
+    for frame in range(frames):
+        quaternion = turn + frame * spin
+        yield place + frame * speed, quaternion / np.linalg.norm(quaternion, axis=1)[:, None]
+
+
+def matrices(quaternions):
+    x, y, z, w = quaternions.T
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.array(rows).transpose(2, 0, 1)
+
+
+class Coal:
+    name = f"Coal {coal.__version__}"
+
+    def __init__(self, meshes, which):
+        models = []
+        for points, faces in meshes:
+            model = coal.BVHModelOBBRSS()
+            model.beginModel(len(faces), len(points))
+            model.addVertices(points)
+            model.addTriangles(faces.astype(np.int64))
+            model.endModel()
+            model.computeLocalAABB()
+            models.append(model)
+        self.objects = [coal.CollisionObject(models[k]) for k in which]
+
+    def place(self, places, turns):
+        for body, rotation, place in zip(self.objects, turns, places):
+            body.setTransform(coal.Transform3s(rotation, place))
+            body.computeAABB()
+        boxes = [body.getAABB() for body in self.objects]
+        self.low, self.high = np.array([box.min_ for box in boxes]), np.array([box.max_ for box in boxes])
+
+    def pairs(self, margin):
+        """Pairs of bodies whose boxes are within the margin, by numpy."""
+        a, b = np.triu_indices(len(self.objects), 1)
+        near = ((self.low[a] <= self.high[b] + margin) & (self.low[b] <= self.high[a] + margin)).all(1)
+        return list(zip(a[near].tolist(), b[near].tolist()))
+
+    def request(self, contacts, margin=0.0):
+        request = coal.CollisionRequest()
+        request.num_max_contacts, request.enable_contact = contacts, contacts > 1
+        request.security_margin = margin
+        return request
+
+    def collides(self, a, b, request):
+        result = coal.CollisionResult()
+        coal.collide(self.objects[a], self.objects[b], request, result)
+        return result.numContacts()
+
+    def touching(self):
+        request = self.request(1)
+        return sum(self.collides(a, b, request) > 0 for a, b in self.pairs(0))
+
+    def crossing(self):
+        request = self.request(10**7)
+        return sum(self.collides(a, b, request) for a, b in self.pairs(0))
+
+    def distances(self, within):
+        """As a careful user does: who is within, then the distance of those that do not touch."""
+        near, touches, total = self.request(1, within), self.request(1), 0.0
+        count = 0
+        for a, b in self.pairs(within):
+            if self.collides(a, b, near) > 0:
+                count += 1
+                if self.collides(a, b, touches) == 0:
+                    result = coal.DistanceResult()
+                    total += coal.distance(self.objects[a], self.objects[b], coal.DistanceRequest(), result)
+        return count, total
+
+
+class Fcl:
+    name = "FCL 0.7.0"
+
+    def __init__(self, meshes, which):
+        models = []
+        for points, faces in meshes:
+            model = fcl.BVHModel()
+            model.beginModel(len(points), len(faces))
+            model.addSubModel(points, faces)
+            model.endModel()
+            models.append(model)
+        self.objects = [fcl.CollisionObject(models[k], fcl.Transform()) for k in which]
+
+    def place(self, places, turns):
+        for body, rotation, place in zip(self.objects, turns, places):
+            body.setTransform(fcl.Transform(rotation, place))
+
+    def count(self, pairs, contacts):
+        request = fcl.CollisionRequest(num_max_contacts=contacts, enable_contact=False)
+        return [fcl.collide(self.objects[a], self.objects[b], request, fcl.CollisionResult()) for a, b in pairs]
+
+
+class Nearmiss:
+    def __init__(self, meshes, which, threads):
+        bodies = [nearmiss.Body.rigid(*meshes[k], name=str(at)) for at, k in enumerate(which)]
+        self.detector = nearmiss.Detector(bodies, device=nearmiss.Device("cpu", threads=threads))
+        self.bodies = np.arange(len(which), dtype=np.uint32)
+        self.name = f"nearmiss, {threads} thread" + "s" * (threads > 1)
+
+    def place(self, places, turns):
+        self.detector.update_poses(self.bodies, places, turns)
+
+    def touching(self):
+        return len(self.detector.body_pairs())
+
+    def crossing(self):
+        return len(self.detector.discrete())
+
+    def distances(self, within):
+        found = self.detector.body_distances(within)
+        return len(found), float(np.sum(found.distances))
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__)
+    arguments.add_argument("--bodies", type=int, default=200)
+    arguments.add_argument("--frames", type=int, default=25)
+    arguments.add_argument("--threads", type=int, default=2)
+    arguments.add_argument("--out")
+    args = arguments.parse_args()
+    meshes = [bumpy(seed) for seed in range(MESHES)]
+    which = np.random.default_rng(0).integers(0, MESHES, args.bodies)
+    threads = sorted({1, args.threads})
+    all_of = [Nearmiss(meshes, which, n) for n in threads] + [Coal(meshes, which), Fcl(meshes, which)]
+    times, answers = {}, {}
+
+    def clock(program, question, act):
+        start = time.perf_counter()
+        value = act()
+        times.setdefault((question, program.name), []).append((time.perf_counter() - start) * 1e6)
+        answers.setdefault((question, program.name), []).append(value)
+
+    for frame, (places, quaternions) in enumerate(poses(args.bodies, args.frames)):
+        turns = matrices(quaternions)
+        for program in all_of:
+            own = quaternions if isinstance(program, Nearmiss) else turns
+            clock(program, "poses", lambda: program.place(places, own))
+            if isinstance(program, Fcl):
+                pairs = all_of[-2].pairs(0)
+                clock(program, "touching", lambda: sum(n > 0 for n in program.count(pairs, 1)))
+                clock(program, "crossing triangles", lambda: sum(program.count(pairs, 10**6)))
+                continue
+            clock(program, "touching", program.touching)
+            clock(program, "crossing triangles", program.crossing)
+            for within in WITHIN:
+                clock(program, f"distances within {within}", lambda: program.distances(within))
+    told = [["question", "program", "microseconds", "count", "distances"]]
+    for (question, program), values in times.items():
+        # The first frame builds.
+        found = answers[question, program]
+        mean = lambda of: statistics.mean(of(value) for value in found)
+        count = distance = ""
+        if isinstance(found[0], tuple):
+            count, distance = f"{mean(lambda v: v[0]):.2f}", f"{mean(lambda v: v[1]):.9g}"
+        elif found[0] is not None:
+            count = f"{mean(lambda v: v):.2f}"
+        told.append([question, program, f"{statistics.median(values[1:]):.0f}", count, distance])
+    told[1:] = sorted(told[1:], key=lambda row: row[0])
+    with open(args.out, "w", newline="") if args.out else sys.stdout as file:
+        csv.writer(file, lineterminator="\n").writerows(told)
+
+
+if __name__ == "__main__":
+    main()
