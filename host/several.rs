@@ -106,6 +106,10 @@ impl MultiDetector {
     /// or on none.
     fn divisible(&self, query: Query) -> Result<Query, Error> {
         let several = self.parts.len() > 1;
+        if query.kind().is_of_bodies() {
+            let what = format!("a {} query by a `MultiDetector`", query.kind());
+            return Err(refused(&what, "use a `Detector` on one device: its work is not divided"));
+        }
         if several && !query.kind().takes_traversals() {
             return Err(refused("a distance on several devices", "use one device: its walk is not divided"));
         }
@@ -148,7 +152,8 @@ impl MultiDetector {
     /// As [`Detector::query`].
     ///
     /// # Errors
-    /// As there; [`Error::InvalidArgument`] for a distance and for trees, which cannot be divided.
+    /// As there; [`Error::InvalidArgument`] for a distance, for pairs of bodies and for trees, which cannot be
+    /// divided.
     pub fn query<Q: TypedQuery>(&mut self, query: &Q) -> Result<Answer<Q::Rows>, Error> {
         let answered = self.answer((*query).into(), Instant::now());
         self.ended(answered).map(Contacts::typed::<Q>)

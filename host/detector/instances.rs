@@ -29,8 +29,8 @@ impl Detector {
         self.engine.has_vertices |= !self.engine.has_instances;
     }
 
-    /// Refuses a query of pairs of bodies where it cannot be answered: by shares of several devices,
-    /// or if only the device has the pose of a rigid body.
+    /// Refuses a query of pairs of bodies that cannot be answered: by shares of several devices, or if
+    /// only the device has the pose of a rigid body.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`].
@@ -45,8 +45,8 @@ impl Detector {
                 advice: "use a `Detector` on one device".into(),
             });
         }
-        let is_lent = |body: &&Body| body.kind() == BodyKind::Rigid && body.is_device_resident();
-        if self.scene.bodies().iter().any(|body| is_lent(&body)) {
+        let is_on_device = |body: &&Body| body.kind() == BodyKind::Rigid && body.is_device_resident();
+        if self.scene.bodies().iter().any(|body| is_on_device(&body)) {
             return Err(Error::InvalidArgument {
                 what: format!("a {kind} query needs poses of rigid bodies that the host has"),
                 advice: "move rigid bodies by `Motion::Pose` before this query".into(),

@@ -27,7 +27,8 @@ fn placed(body: &Body) -> Vec<Corners> {
     let points: Vec<Vec3<f64>> = body.positions_t0().to_f64().into_iter().map(Vec3).collect();
     let points: Vec<Vec3<f64>> = if body.kind() == BodyKind::Rigid {
         let Pose { rotation, translation } = body.poses()[0];
-        let rows = rigid::rows(rotation);
+        let length = rotation.iter().map(|q| q * q).sum::<f64>().sqrt();
+        let rows = rigid::rows(rotation.map(|q| q / length));
         points.iter().map(|&point| rigid::moved(&rows, &translation, point)).collect()
     } else {
         points

@@ -62,8 +62,7 @@ impl Next {
                 }
                 BodyKind::Deformable => {
                     let by = [(); 3].map(|()| rng.random_range(-0.5..0.5));
-                    let new =
-                        |p: &[f64; 3]| [0, 1, 2].map(|k| p[k] + by[k] + 0.05 * (7.0 * p[(k + 1) % 3]).sin());
+                    let new = |p: &[f64; 3]| [0, 1, 2].map(|k| p[k] + by[k] + 0.05 * (7.0 * p[(k + 1) % 3]).sin());
                     let at = body.positions_t0().to_f64();
                     points.push((id, Positions::F64(at.iter().map(new).collect())));
                 }
@@ -132,7 +131,7 @@ fn every_machine_has_the_same_rows() {
     for (seed, kinds) in [(5, Kinds::RigidAndFixed), (6, Kinds::Mixed)] {
         let answers = |device: Device| {
             let mut rng = SmallRng::seed_from_u64(seed);
-            let scene = scene(&mut rng, kinds, 9, 0.0, false);
+            let scene = scene(&mut rng, kinds, 12, 0.0, false);
             let mut detector = Detector::new(device, scene).expect("a detector");
             let mut hashes = Vec::new();
             for _ in 0..2 {
@@ -146,9 +145,10 @@ fn every_machine_has_the_same_rows() {
             hashes
         };
         let expected = answers(engine());
-        assert!(
-            expected.iter().all(|(pairs, first, near)| pairs.len() > 1 && first.len() == 1 && near.len() > 5)
-        );
+        let alike = |(pairs, first, near): &(Vec<_>, Vec<_>, Vec<NearestTriangles>)| {
+            pairs.len() > 1 && first[..] == pairs[..1] && near.len() > pairs.len()
+        };
+        assert!(expected.iter().all(alike));
         for order in ORDERS {
             let device = Emulator::new(Mode::Sanitizer(order), None).expect("threads");
             assert_eq!(answers(Device::emulator(device)), expected, "{order:?}");

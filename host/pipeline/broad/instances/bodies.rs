@@ -1,5 +1,5 @@
 //! The search of queries of pairs of bodies: relations and their words, down to pairs of triangles
-//! that say something new of their bodies.
+//! that may decide a row.
 
 use super::{BodyGroups, striding, without_instances};
 use crate::device::Device;
@@ -107,12 +107,6 @@ impl PairSearch {
         let args = InstancesWithinArgs { of: self.bodies.instances_args(&of, candidates), words };
         striding::<entry::traverse_corners>(device, &args)?;
         striding::<entry::traverse_instances_within>(device, &args)
-    }
-
-    /// Makes a bound of every relation too small: a planted fault.
-    #[cfg(test)]
-    pub fn plant_within(&mut self, within: f64) {
-        self.wanted = Wanted::Within(within);
     }
 }
 

@@ -20,8 +20,8 @@
 //!          at D is a candidate. Its boxes' gap is at most D
 //!          ([`crate::prim::nearest`]), so it is measured whatever other lanes found before. So
 //!          nothing depends on the schedule.
-//! Room     lists: counted past the end, grown, run again. A list that runs again finds words that
-//!          are as high or higher, and truer: pairs are listed by the same words.
+//! Room     lists: counted past the end, grown, run again. Words keep their values: relations have
+//!          the same numbers, and a word only says what is true of its bodies.
 //! Cost     8 B a candidate, 500 B gathered. 600 operations for all signs, if boxes overlap. 4,000
 //!          for a distance, if the boxes are nearer than the best known; thousands for exact signs.
 

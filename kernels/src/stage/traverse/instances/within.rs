@@ -199,7 +199,7 @@ pub fn candidates<B: Block>(block: &mut B, args: &InstancesWithinArgs) {
             *columns.of(lane) = (q, is_there & q.reaches(&a));
             lane.meet();
         });
-        // A lane's wish is gone once places are numbered: its row tells it again.
+        // Numbering replaces each lane's wish: its row is tested again below.
         let height = block.number(&mut places);
         tests += (2 * LANES + LANES * height) as u64;
         if height == 0 {
