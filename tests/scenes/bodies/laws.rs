@@ -93,7 +93,7 @@ fn rows_are_those_of_all_pairs_of_triangles() {
                 let found = found.unwrap_or_else(|fault| panic!("{kinds:?} at {place}, {frame}: {fault}"));
                 all = [all[0] + found[0], all[1] + found[1]];
             }
-            assert!(all[0] > 5 && all[1] > 100, "{kinds:?} at {place}, {filters}: {all:?}");
+            assert!(all[0] > 2 && all[1] > 100, "{kinds:?} at {place}, {filters}: {all:?}");
         }
     }
 }
@@ -131,7 +131,7 @@ fn every_machine_has_the_same_rows() {
     for (seed, kinds) in [(5, Kinds::RigidAndFixed), (6, Kinds::Mixed)] {
         let answers = |device: Device| {
             let mut rng = SmallRng::seed_from_u64(seed);
-            let scene = scene(&mut rng, kinds, 12, 0.0, false);
+            let scene = scene(&mut rng, kinds, 16, 0.0, false);
             let mut detector = Detector::new(device, scene).expect("a detector");
             let mut hashes = Vec::new();
             for _ in 0..2 {
@@ -146,7 +146,7 @@ fn every_machine_has_the_same_rows() {
         };
         let expected = answers(engine());
         let alike = |(pairs, first, near): &(Vec<_>, Vec<_>, Vec<NearestTriangles>)| {
-            pairs.len() > 1 && first[..] == pairs[..1] && near.len() > pairs.len()
+            !pairs.is_empty() && first[..] == pairs[..1] && near.len() > pairs.len()
         };
         assert!(expected.iter().all(alike));
         for order in ORDERS {
