@@ -16,7 +16,7 @@ pub const POSES: &str = "poses of rigid bodies";
 pub const MESHES: &str = "meshes in their own frames, once each";
 /// Bodies as instances of meshes.
 pub const INSTANCES: &str = "mesh and place of each body";
-/// What a refit of the meshes of deformable bodies reads.
+/// Lists that a refit of meshes of deformable bodies reads.
 pub const REFITTED: &str = "vertices, triangles and nodes of meshes that deform";
 /// Boxes of bodies, and of groups of bodies.
 pub const BODY_BOXES: &str = "boxes of bodies, of groups and above, and their order";

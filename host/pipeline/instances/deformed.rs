@@ -13,7 +13,7 @@ use nearmiss_kernels::abi::{
 use nearmiss_kernels::bvh::tiles::TILE;
 use nearmiss_kernels::entry;
 
-/// What a refit reads.
+/// Lists that a refit reads.
 pub struct Deformed {
     /// A vertex of the scene, and the same among those of all meshes.
     moves: Buffer<[u32; 2]>,

@@ -62,7 +62,8 @@ impl Next {
                 }
                 BodyKind::Deformable => {
                     let by = [(); 3].map(|()| rng.random_range(-0.5..0.5));
-                    let new = |p: &[f64; 3]| [0, 1, 2].map(|k| p[k] + by[k] + 0.05 * (7.0 * p[(k + 1) % 3]).sin());
+                    let new =
+                        |p: &[f64; 3]| [0, 1, 2].map(|k| p[k] + by[k] + 0.05 * (7.0 * p[(k + 1) % 3]).sin());
                     let at = body.positions_t0().to_f64();
                     points.push((id, Positions::F64(at.iter().map(new).collect())));
                 }

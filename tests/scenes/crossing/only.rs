@@ -4,7 +4,6 @@
 use super::{apart, engine, sphere};
 use nearmiss::contacts::{PairKind, TrianglePair};
 use nearmiss::mesh::Positions;
-use nearmiss::research::QueryExt;
 use nearmiss::scene::{CollisionFilter, Motion, Pose, Scene};
 use nearmiss::{Body, Detector, Discrete, Mesh, MultiDetector, Query};
 use rand::rngs::SmallRng;

@@ -38,7 +38,7 @@ fn an_answer_is_the_one_without_a_list_less_its_rows() {
     assert!(fewer.iter().all(|&fewer| fewer > 200), "{fewer:?}");
 }
 
-/// Crates in a row, each a little into the next: more than groups can tell apart.
+/// Crates in a row, each a little into the next: more than groups can separate.
 fn chain(kind: fn(Mesh) -> Body) -> (Scene, Vec<[BodyId; 2]>) {
     let kind = |mesh| kind(mesh).with_filter(CollisionFilter::without_self_collision());
     let mut scene = Scene::new();
