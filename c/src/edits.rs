@@ -122,8 +122,8 @@ pub unsafe extern "C" fn nearmiss_detector_leave_out(
     })
 }
 
-/// Writes the pairs of bodies that are left out, two numbers each: the smaller one first, ascending.
-/// They live until a call changes the bodies or the list.
+/// Writes the pairs of bodies that are left out, two numbers each: the smaller one first,
+/// ascending. They live until a call changes the bodies or the list.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_detector_left_out(
     detector: Option<&mut NearmissDetector>,
