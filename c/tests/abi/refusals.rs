@@ -194,7 +194,8 @@ fn a_bad_query_is_refused() {
     let mut bad = |kind, change: fn(&mut NearmissQuery), says: &str| {
         refused(asked(kind, change), NEARMISS_INVALID_ARGUMENT, says);
     };
-    bad(5, |_| (), "kind of the query is unknown, got 5");
+    bad(7, |_| (), "kind of the query is unknown, got 7");
+    bad(6, |query| query.distance = f64::INFINITY, "inf");
     // The library's messages: the field and the value.
     bad(3, |_| (), "distance");
     bad(3, |query| query.distance = f64::NAN, "NaN");

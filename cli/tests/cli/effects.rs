@@ -121,6 +121,8 @@ fn every_option_changes_something_or_is_refused() {
         ("detect", scene.clone(), no.clone(), vec!["--earliest"]),
         ("detect", scene.clone(), no.clone(), vec!["--near", "0.01"]),
         ("detect", vec![&t0, "--with", &other, "--json"], no.clone(), vec!["--distance"]),
+        ("detect", vec![&t0, "--with", &other, "--json"], no.clone(), vec!["--body-pairs"]),
+        ("detect", vec![&t0, "--with", &other, "--json"], vec!["--distance"], vec!["--body-distances", "9"]),
         ("detect", scene.clone(), vec!["--broad-phase", "tiles"], vec!["--broad-phase", "tree"]),
         ("detect", scene.clone(), vec!["--bounding-volume", "aabb"], vec!["--bounding-volume", "obb"]),
         (
