@@ -987,8 +987,8 @@ NearmissCode nearmiss_detector_leave_out(NearmissDetector *detector,
                                          size_t count,
                                          NearmissError *error);
 
-// Writes the pairs of bodies that are left out, two numbers each: the smaller one first, ascending.
-// They live until a call changes the bodies or the list.
+// Writes the pairs of bodies that are left out, two numbers each: the smaller one first,
+// ascending. They live until a call changes the bodies or the list.
 NearmissCode nearmiss_detector_left_out(NearmissDetector *detector,
                                         const uint32_t **pairs,
                                         size_t *count,

@@ -1,26 +1,5 @@
 //! Types of kernels, their PTX entries and the table, from lines of [`super`].
 
-/// The entries of the PTX: of a type that is the kernel, and its name.
-#[cfg(target_arch = "nvptx64")]
-macro_rules! entries {
-    ($($kernel:ty, $name:expr;)*) => { $(
-        const _: () = {
-            // SAFETY: called by the driver, once a thread, with arguments of the size in TABLE.
-            #[unsafe(export_name = $name)]
-            unsafe extern "ptx-kernel" fn entry(args: <$kernel as Entry>::Args) {
-                // SAFETY: the one block of this kernel, made at its start; the host launches it
-                // with as many lanes.
-                let mut block = unsafe { crate::exec::ptx::Gpu::<{ <$kernel as Entry>::LANES }>::new() };
-                <$kernel as Entry>::run(&mut block, &args);
-            }
-        };
-    )* };
-}
-#[cfg(not(target_arch = "nvptx64"))]
-macro_rules! entries {
-    ($($kernel:ty, $name:expr;)*) => {};
-}
-
 /// The associated constants of a kernel, from the parts of its line.
 macro_rules! is_entry {
     ($path:expr, [$args:ty], $lanes:expr, $shared:expr $(, exact = $exact:literal)? $(, registers = $registers:literal)?) => {
