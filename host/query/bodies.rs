@@ -23,7 +23,7 @@ use crate::error::Error;
 /// let mut detector = Detector::new(Device::open(Backend::Cpu, None)?, bodies)?;
 /// let pairs = detector.query(&BodyPairs::default())?;
 /// assert_eq!(pairs.len(), 1);
-/// assert_eq!(pairs[0].bodies, [BodyId(1), BodyId(2)]);
+/// assert_eq!(pairs[0].bodies.map(BodyId::index), [1, 2]);
 /// # Ok::<(), nearmiss::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
