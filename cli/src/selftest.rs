@@ -7,6 +7,7 @@ use super::args::SelftestArgs;
 use super::detect::body;
 use super::output::print;
 use super::progress::during;
+use nearmiss::BodyPairs;
 use nearmiss::contacts::Contacts;
 use nearmiss::device::Device;
 use nearmiss::device::emulator::{Emulator, Mode, Order};
@@ -28,6 +29,9 @@ use std::process::ExitCode;
 const SMALL: usize = 300;
 /// Equal triangles: all pairs of their features touch at the start, which only exact signs decide.
 const EQUAL: usize = 40;
+
+/// Limit of distances of bodies whose diameter is about 1.
+const WITHIN: f64 = 0.5;
 
 /// Steps of a scene of many bodies.
 const STEPS: u32 = 3;
@@ -228,8 +232,31 @@ impl Bench {
             self.compare(&args.mesh[0].display().to_string(), &[body(&args.mesh)?])?;
         }
         let balls = (args.triangles / 200).max(4);
-        self.compare_bodies("a pile of bodies", &Bodies::pile(balls, 40, 20)?)?;
-        self.compare_bodies("worlds", &Bodies::worlds(balls as u32 / 4, 4)?)
+        for (name, scene) in [
+            ("a pile of bodies", Bodies::pile(balls, 40, 20)?),
+            ("worlds", Bodies::worlds(balls as u32 / 4, 4)?),
+        ] {
+            self.compare_bodies(name, &scene)?;
+            self.compare_pairs_of_bodies(name, &scene)?;
+        }
+        Ok(())
+    }
+
+    /// Pairs of bodies and their distances, step after step. There is one way to find them.
+    fn compare_pairs_of_bodies(&mut self, name: &str, scene: &Bodies) -> Result<(), Error> {
+        let first = BodyPairs::first(1).into();
+        for query in [Query::body_pairs(), first, Query::body_distances(0.0), Query::body_distances(WITHIN)] {
+            let own = |device| during("comparing machines", || print_of_steps(device, scene, query));
+            let (want, there) = (own(&self.engine)?, own(&self.machine)?);
+            let kind = query.kind();
+            if let Some(stage) = difference(&want, &there) {
+                self.faults.push(format!("{name}, {kind}: {stage}"));
+            }
+            let hash = want.stages.last().map_or(0, |stage| stage.1);
+            let rows = counted(want.contacts as u64, "row", "rows");
+            line(format!("{hash:016x} {rows:>18}  {name}, {kind}"))?;
+        }
+        Ok(())
     }
 
     /// A scene of many bodies, step after step.

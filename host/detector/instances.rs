@@ -34,11 +34,12 @@ impl Detector {
     ///
     /// # Errors
     /// [`Error::InvalidArgument`].
-    pub(super) fn may_pair_bodies(&self, query: &Query) -> Result<(), Error> {
+    pub(super) fn may_pair_bodies(&mut self, query: &Query) -> Result<(), Error> {
         let kind = query.kind();
         if !kind.is_of_bodies() {
             return Ok(());
         }
+        self.read_again(false);
         if self.portion.is_part || self.portion.share != Share::WHOLE {
             return Err(Error::InvalidArgument {
                 what: format!("a {kind} query cannot be divided among several devices"),

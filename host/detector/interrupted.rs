@@ -43,7 +43,7 @@ impl Detector {
 
     /// Drops the device's memory, which kernels may have written in part. Placing is never
     /// interrupted, so device-resident positions are complete: they are downloaded first.
-    fn begin_again(&mut self) {
+    pub(super) fn begin_again(&mut self) {
         self.engine.answered = None;
         if self.engine.pipeline.is_some() && self.scene.bodies().iter().any(Body::is_device_resident) {
             self.bring_all();

@@ -16,6 +16,7 @@ impl Detector {
     /// As of [`Detector::update`], and of a query that will read them. On an error nothing has
     /// moved.
     pub(crate) fn apply(&mut self, inputs: &[(BodyId, Motion)], query: Option<&Query>) -> Result<(), Error> {
+        self.read_again(false);
         let named = self.put(inputs, query)?;
         let mut moved = Vec::with_capacity(inputs.len());
         for (body, (own, named)) in self.scene.bodies_mut().iter_mut().zip(named).enumerate() {

@@ -151,6 +151,10 @@ impl Detector {
             || query.kind().is_of_bodies()
             || u64::from(self.portion.slices(query)) >= tiles
         {
+            if is_short {
+                // Some lists have grown and others have not.
+                self.begin_again();
+            }
             return Err(error);
         }
         if self.engine.pipeline.is_some() {

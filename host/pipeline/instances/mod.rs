@@ -120,14 +120,19 @@ impl Instances {
         self.deformed.as_ref().map_or(Ok(()), |own| own.refit(device, self.tables(), positions))
     }
 
-    /// Uploads the poses of all bodies.
+    /// Uploads the poses of all bodies, if one has changed.
     ///
     /// # Errors
     /// Device errors.
     pub fn put(&mut self, bodies: &[Body]) -> Result<(), Error> {
-        self.placed.clear();
-        self.placed.extend(bodies.iter().map(pose));
-        self.poses.write(&self.placed)
+        let placed: Vec<PoseRecord> = bodies.iter().map(pose).collect();
+        // By bytes: the sign of a zero may change the bits of a placed vertex.
+        if bytemuck::cast_slice::<_, u8>(&placed) == bytemuck::cast_slice::<_, u8>(&self.placed) {
+            return Ok(());
+        }
+        self.poses.write(&placed)?;
+        self.placed = placed;
+        Ok(())
     }
 
     /// Returns meshes and bodies, for kernels.

@@ -137,10 +137,15 @@ impl<R: Precision> SceneMemory<R> {
     /// # Errors
     /// Device errors.
     pub fn ready_instances(&mut self, bodies: &[Body], layout: &Layout) -> Result<(), Error> {
-        if self.instances.is_none() {
-            self.instances = Some(Instances::new(&self.device, bodies, layout)?);
-        }
-        let deform = self.instances.as_ref().is_some_and(Instances::deform);
+        let instances = match &mut self.instances {
+            Some(instances) => {
+                // A download tells the host of poses that no update named.
+                instances.put(bodies)?;
+                instances
+            }
+            none => none.insert(Instances::new(&self.device, bodies, layout)?),
+        };
+        let deform = instances.deform();
         // Meshes that deform are refitted to vertices in the scene.
         if deform { self.ready(true) } else { Ok(()) }
     }

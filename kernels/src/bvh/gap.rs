@@ -58,7 +58,8 @@ pub struct CloseInBoth {
 /// The square of the gap of two boxes.
 #[inline(always)]
 fn squared(a: &FrameBox, b: &FrameBox) -> f32 {
-    let one = |k: usize| (a.lo[k] - b.hi[k]).greater(b.lo[k] - a.hi[k]).greater(0.0);
+    // 0 comes first, so that the NaN of two infinite ends is no gap on any machine.
+    let one = |k: usize| 0.0_f32.greater(a.lo[k] - b.hi[k]).greater(b.lo[k] - a.hi[k]);
     let (x, y, z) = (one(0), one(1), one(2));
     x * x + y * y + z * z
 }
@@ -136,6 +137,18 @@ mod tests {
         assert_eq!(words.bound_of(!2.0_f64.to_bits()), 2.0);
         assert_eq!(words.bound_of(!4.0_f64.to_bits()), 3.5);
         assert_eq!(words.bound_of(!0.0_f64.to_bits()), 0.0);
+    }
+
+    #[test]
+    fn boxes_without_ends_have_no_gap() {
+        let [down, up] = [f32::NEG_INFINITY, f32::INFINITY];
+        let everything = FrameBox { lo: [down; 3], hi: [up; 3] };
+        for end in [down, up] {
+            let far = FrameBox { lo: [end; 3], hi: [end; 3] };
+            for [a, b] in [[far, everything], [everything, far], [far, far]] {
+                assert_eq!(squared(&a, &b), 0.0, "{a:?}, {b:?}");
+            }
+        }
     }
 
     #[test]

@@ -98,3 +98,16 @@ fn other_frames_in_between_change_nothing() {
     own.query(&Discrete::default()).expect("an answer");
     judged(&mut own, &[1e4]).expect("alike");
 }
+
+/// Boxes at rest beyond the range of f32, of every kind.
+#[test]
+fn bodies_beyond_the_range_of_f32_meet() {
+    for scale in [1e30, 1e39, 1e42] {
+        let at = |low: f64| cuboid([low * scale, 0.0, 0.0], [(low + 1.0) * scale, scale, scale]);
+        for kind in [Body::deformable, Body::rigid] {
+            let mut own = detector(vec![kind(at(0.0)), kind(at(1.0)), kind(at(2.5))]);
+            // The first two touch; the third is half a side from the second.
+            assert_eq!(judged(&mut own, &[0.0, scale]), Ok([1, 3]), "{scale:e}");
+        }
+    }
+}

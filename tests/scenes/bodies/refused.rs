@@ -3,6 +3,7 @@
 use super::*;
 use nearmiss::error::Error;
 use nearmiss::research::{BoundingVolume, BroadPhase, QueryExt};
+use nearmiss::scene::{DeviceMotion, DevicePose, DeviceRows, Number};
 use nearmiss::{MultiDetector, Query};
 
 /// Two boxes that touch.
@@ -58,4 +59,47 @@ fn submissions_and_several_devices_are_refused() {
     // A detector that has submitted answers these queries, too.
     own.prepare(&[], &[Query::discrete()]).expect("prepared");
     assert_eq!(judged(&mut own, &[0.0, 1.0]), Ok([1, 2]));
+}
+
+/// A pose in memory of the device.
+struct Lent {
+    rotation: [f64; 4],
+    translation: [f64; 3],
+}
+
+impl Lent {
+    fn motion(&self) -> Motion<'static> {
+        // SAFETY: it outlives the call that reads it, on a CPU; nothing writes meanwhile.
+        let rows = |address: *const f64, width: usize| unsafe {
+            DeviceRows::new(address as u64, 1, 8 * width, Number::F64).expect("rows")
+        };
+        let translation = rows(self.translation.as_ptr(), 3);
+        Motion::OnDevice(DeviceMotion::Pose(DevicePose {
+            translation,
+            rotation: rows(self.rotation.as_ptr(), 4),
+        }))
+    }
+}
+
+/// Poses that only the device has are refused. Once the host has them, answers are about them, also
+/// beside a body that deforms.
+#[test]
+fn poses_of_the_device_are_refused_until_they_are_downloaded() {
+    let deforms = Body::deformable(cuboid([9.0; 3], [10.0; 3]));
+    for more in [None, Some(deforms)] {
+        let bodies: Vec<Body> = boxes().into_iter().chain(more).collect();
+        let mut own = Detector::new(engine(), bodies).expect("a detector");
+        let ids: Vec<BodyId> = own.scene().ids().collect();
+        assert_eq!(judged(&mut own, &[0.0]), Ok([1, 1]));
+        for shift in [5.0, 0.0, 3.0] {
+            let lent = Lent { rotation: [0.0, 0.0, 0.0, 1.0], translation: [shift, 0.0, 0.0] };
+            own.update(&[(ids[1], lent.motion())]).expect("a place");
+            let said = refusal(own.query(&BodyPairs::default()));
+            assert!(said.contains("poses of rigid bodies that the host has"), "{said}");
+            own.download_positions().expect("positions");
+            let touch = usize::from(shift == 0.0);
+            let found = judged(&mut own, &[0.0, 4.0]).expect("alike");
+            assert_eq!(found[0], touch, "{shift}");
+        }
+    }
 }

@@ -14,6 +14,9 @@ use nearmiss_kernels::bv::FrameBox;
 use nearmiss_kernels::bvh::tiles::{self, Levels, Part, TILE};
 use nearmiss_kernels::entry;
 
+/// Boxes of fixed bodies that have grown more than so many times what a query needs are fitted again.
+/// A cost; no answer depends on it.
+const LOOSE: f32 = 16.0;
 /// The two parts of the memory: moving and fixed bodies.
 const MOVING: usize = 0;
 const FIXED: usize = 1;
@@ -72,12 +75,13 @@ impl Groups {
     /// Sets the growth of each box. Returns whether boxes of fixed bodies must be fitted again.
     pub fn set_margin(&mut self, margin: f32) -> bool {
         self.margins[MOVING] = margin;
-        // Fixed boxes keep the largest growth, so that queries with several limits take turns.
-        let grows = margin > self.margins[FIXED];
-        if grows {
+        // Fixed boxes keep a larger growth, so that queries with several limits take turns.
+        let held = self.margins[FIXED];
+        let is_other = margin > held || margin < held / LOOSE;
+        if is_other {
             (self.margins[FIXED], self.has_fixed) = (margin, false);
         }
-        grows && self.bodies[FIXED] > 0
+        is_other && self.bodies[FIXED] > 0
     }
 
     /// Puts bodies in order: environments, then along a curve through the centres. Fixed bodies are
@@ -93,10 +97,10 @@ impl Groups {
     ) -> Result<(), Error> {
         self.put_in_order(device, layout, instances, MOVING)?;
         if self.bodies[FIXED] > 0 && !self.has_fixed {
-            self.has_fixed = true;
             self.put_in_order(device, layout, instances, FIXED)?;
             self.fit_part(device, instances, FIXED)?;
             self.refit_part(device, FIXED)?;
+            self.has_fixed = true;
         }
         Ok(())
     }

@@ -50,6 +50,10 @@ pub fn bodies<B: Block>(block: &mut B, args: &BodiesArgs) {
 /// Around everything within a margin of a mesh's placed vertices, in f32.
 #[inline(always)]
 pub fn placed_box(frame: &InstanceFrame, mesh: &MeshRecord, margin: f32) -> FrameBox {
+    // A mesh that deforms beyond the range of f32 has a box without ends.
+    if mesh.radius == f64::INFINITY {
+        return FrameBox { lo: [f32::NEG_INFINITY; 3], hi: [f32::INFINITY; 3] };
+    }
     let middle = |k: usize| 0.5 * mesh.lo[k] + 0.5 * mesh.hi[k];
     let c = [middle(0), middle(1), middle(2)];
     let half = |k: usize| {
