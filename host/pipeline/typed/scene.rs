@@ -139,7 +139,7 @@ impl<R: Precision> SceneMemory<R> {
     pub fn ready_instances(&mut self, bodies: &[Body], layout: &Layout) -> Result<(), Error> {
         let instances = match &mut self.instances {
             Some(instances) => {
-                // A download tells the host of poses that no update named.
+                // The host may have poses of a download, which no update named.
                 instances.put(bodies)?;
                 instances
             }

@@ -82,7 +82,7 @@ impl Lent {
 }
 
 /// Poses that only the device has are refused. Once the host has them, answers are about them, also
-/// beside a body that deforms.
+/// in a scene with a body that deforms.
 #[test]
 fn poses_of_the_device_are_refused_until_they_are_downloaded() {
     let deforms = Body::deformable(cuboid([9.0; 3], [10.0; 3]));

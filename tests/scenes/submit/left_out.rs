@@ -6,7 +6,7 @@ use super::*;
 /// does not.
 #[test]
 fn a_submission_leaves_out_the_pairs_of_the_list() {
-    for kind in QueryKind::ALL {
+    for kind in support::asked::KINDS {
         let (mut scene, cloth, [t0, t1]) = pair(120);
         let ground = scene.id(1).expect("the fixed body");
         let wall = scene.add(Body::fixed(soup(60, 3).0));
