@@ -17,7 +17,7 @@ pub struct AccuracyArgs {
     /// Limit the iterations for a pair of features [default: 4096]
     ///
     /// A pair that is not decided by then is reported as undecided.
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = some::<u32>())]
+    #[arg(long, hide_short_help = true, value_name = "N", allow_negative_numbers = true, value_parser = some::<u32>())]
     pub max_iterations: Option<u32>,
 }
 

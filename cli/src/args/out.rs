@@ -22,7 +22,7 @@ pub struct OutArgs {
     #[arg(long, requires = "out", conflicts_with_all = ["file_faces", "earliest", "distance", "body_pairs", "body_distances"])]
     pub geometry: bool,
     /// Name faces of the file in --out, not triangles; they count from 0
-    #[arg(long, requires = "out", conflicts_with_all = ["scene", "earliest"])]
+    #[arg(long, requires = "out", conflicts_with_all = ["scene", "earliest"], hide_short_help = true)]
     pub file_faces: bool,
     /// Write all bodies at t = 0 as one mesh, contacts in red (.ply)
     ///

@@ -120,19 +120,22 @@ impl Instances {
         self.deformed.as_ref().map_or(Ok(()), |own| own.refit(device, self.tables(), positions))
     }
 
-    /// Uploads the poses of all bodies, if one has changed.
+    /// Uploads the poses of all bodies.
     ///
     /// # Errors
     /// Device errors.
     pub fn put(&mut self, bodies: &[Body]) -> Result<(), Error> {
-        let placed: Vec<PoseRecord> = bodies.iter().map(pose).collect();
-        // By bytes: the sign of a zero may change the bits of a placed vertex.
-        if bytemuck::cast_slice::<_, u8>(&placed) == bytemuck::cast_slice::<_, u8>(&self.placed) {
-            return Ok(());
-        }
-        self.poses.write(&placed)?;
-        self.placed = placed;
-        Ok(())
+        self.placed.clear();
+        self.placed.extend(bodies.iter().map(pose));
+        self.poses.write(&self.placed)
+    }
+
+    /// Returns whether bodies have other poses than those on the device. By bytes: the sign of a zero
+    /// may change the bits of a placed vertex.
+    pub fn differ(&self, bodies: &[Body]) -> bool {
+        let is_other =
+            |(held, body): (&PoseRecord, &Body)| bytemuck::bytes_of(held) != bytemuck::bytes_of(&pose(body));
+        self.placed.iter().zip(bodies).any(is_other)
     }
 
     /// Returns meshes and bodies, for kernels.

@@ -140,7 +140,9 @@ impl<R: Precision> SceneMemory<R> {
         let instances = match &mut self.instances {
             Some(instances) => {
                 // The host may have poses of a download, which no update named.
-                instances.put(bodies)?;
+                if instances.differ(bodies) {
+                    instances.put(bodies)?;
+                }
                 instances
             }
             none => none.insert(Instances::new(&self.device, bodies, layout)?),
