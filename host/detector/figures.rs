@@ -62,7 +62,11 @@ impl Detector {
             distance: match query {
                 Query::Near(near) => Some(near.distance),
                 Query::BodyDistances(distances) => Some(distances.within),
-                _ => None,
+                Query::Discrete(_)
+                | Query::Continuous(_)
+                | Query::Earliest(_)
+                | Query::Distance(_)
+                | Query::BodyPairs(_) => None,
             },
             nearest: contacts.nearest().copied(),
             earliest_toi: contacts.earliest_toi(),

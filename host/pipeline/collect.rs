@@ -37,9 +37,10 @@ pub fn collect(
     let vf_ee = [count(counter::VF) + turning[0], count(counter::EE) + turning[1]];
     let of_triangles = !query.kind().is_of_features();
     let starts_crossing = found.is_start_checked.then(|| count(counter::STARTS_CROSSING));
-    let undecided = match found.listed {
-        Listed::Earliest { undecided, .. } => undecided.into(),
-        _ => count(counter::UNDECIDED),
+    let undecided = if let Listed::Earliest { undecided, .. } = found.listed {
+        undecided.into()
+    } else {
+        count(counter::UNDECIDED)
     };
     let caveats = caveats(&found);
     let stats = Stats {
@@ -160,7 +161,11 @@ fn caveats(found: &Found) -> Vec<Caveat> {
     match found.listed {
         Listed::Near(_) => put(unsure, Caveat::DistanceBelowPrecision { pairs: unsure }),
         Listed::Earliest { undecided, .. } => put(undecided as u64, Caveat::EarliestUndecided),
-        _ => put(unsure, Caveat::Undecided { pairs: unsure }),
+        Listed::Pairs(_)
+        | Listed::Hits { .. }
+        | Listed::Nearest(_)
+        | Listed::BodyPairs { .. }
+        | Listed::BodyDistances(_) => put(unsure, Caveat::Undecided { pairs: unsure }),
     }
     put(ended, Caveat::Iterations { pairs: ended });
     put(below_precision, Caveat::ToleranceBelowPrecision { pairs: Some(below_precision) });

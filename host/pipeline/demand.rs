@@ -45,7 +45,11 @@ impl Demand {
             match query.kind() {
                 QueryKind::BodyPairs => &[counter::MEETING_BODIES],
                 QueryKind::BodyDistances => &[counter::NEAR_BODIES],
-                _ => &[counter::CONTACTS],
+                QueryKind::Discrete
+                | QueryKind::Continuous
+                | QueryKind::Earliest
+                | QueryKind::Near
+                | QueryKind::Distance => &[counter::CONTACTS],
             }
         };
         Demand { row: bytes as u64, counters, within, advice, before: 0 }

@@ -209,10 +209,11 @@ impl Query {
         if let Query::Near(near) = &mut shape {
             near.distance = Near::DISTANCE;
         }
-        match &mut shape {
-            Query::BodyPairs(pairs) => pairs.first = None,
-            Query::BodyDistances(distances) => distances.within = BodyDistances::WITHIN,
-            _ => {}
+        if let Query::BodyPairs(pairs) = &mut shape {
+            pairs.first = None;
+        }
+        if let Query::BodyDistances(distances) = &mut shape {
+            distances.within = BodyDistances::WITHIN;
         }
         if let Some(certified) = shape.certified_mut() {
             let min_separation = if certified.is_apart() { 1.0 } else { 0.0 };

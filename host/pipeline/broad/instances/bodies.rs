@@ -27,12 +27,12 @@ enum Wanted {
 
 impl Wanted {
     fn of(query: &Query) -> Wanted {
-        match query {
+        if let Query::BodyDistances(query) = query {
             // Adding zero turns -0.0 into 0.0.
-            Query::BodyDistances(query) => Wanted::Within(query.within + 0.0),
-            Query::BodyPairs(query) => Wanted::Touching { only_first: query.first == Some(1) },
-            _ => Wanted::Touching { only_first: false },
+            return Wanted::Within(query.within + 0.0);
         }
+        let only_first = matches!(query, Query::BodyPairs(query) if query.first == Some(1));
+        Wanted::Touching { only_first }
     }
 }
 
