@@ -39,10 +39,9 @@ impl TouchingBodies {
     }
 }
 
-/// Answer of BodyDistances: the nearest triangles of each two bodies within the distance, a row a
-/// pair of bodies.
+/// Answer of BodyDistances: each two bodies within the distance, a row a pair.
 ///
-/// Rows ascend by the first body, then by the second.
+/// A row has their nearest triangles. Rows ascend by the first body, then by the second.
 #[pyclass(module = "nearmiss", frozen, extends = Answer)]
 pub struct NearestBodies;
 

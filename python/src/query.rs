@@ -7,9 +7,9 @@ use nearmiss::research::{Certified, QueryExt, TriangleTest, WithSolver};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple, PyType};
 
-/// Base class of all queries: Discrete, Continuous, Earliest, Near, Distance, BodyPairs,
-/// BodyDistances.
+/// Base class of all queries.
 ///
+/// These are Discrete, Continuous, Earliest, Near, Distance, BodyPairs and BodyDistances.
 /// A query is a value: it can be compared, hashed, copied and pickled. Each class of queries has an
 /// answer class of its own. Queries with other numbers use the same memory of a detector.
 #[pyclass(module = "nearmiss", frozen, subclass)]

@@ -216,7 +216,7 @@ def test_a_choice_that_is_missing_is_noticed():
 # Names that were.
 
 OLD = set("""
-fra-me det-ect fet-ch sepa-ration bud-get self_con-tact toi-_hi indi-ces fir-st degr-aded unre-solved Choice-Error CON-TACT
+fra-me det-ect fet-ch sepa-ration bud-get self_con-tact toi-_hi indi-ces degr-aded unre-solved Choice-Error CON-TACT
 UNRE-SOLVED bro-ad b-v a b w-0 tri-_a ear-liest_query
 """.replace("-", "").split())
 """Names that nothing has any more. They are divided so that a search for one finds nothing."""

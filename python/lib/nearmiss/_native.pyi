@@ -312,9 +312,9 @@ class Scene:
     def __len__(self) -> int: ...
 
 class Query(Generic[_A]):
-    """Base class of all queries: Discrete, Continuous, Earliest, Near, Distance, BodyPairs,
-    BodyDistances.
+    """Base class of all queries.
 
+    These are Discrete, Continuous, Earliest, Near, Distance, BodyPairs and BodyDistances.
     A query is a value: it can be compared, hashed, copied and pickled. Each class of queries has an
     answer class of its own. Queries with other numbers use the same memory of a detector.
     """
@@ -628,10 +628,9 @@ class TouchingBodies(Answer):
         """Whether no two bodies share a point."""
 
 class NearestBodies(Answer):
-    """Answer of BodyDistances: the nearest triangles of each two bodies within the distance, a row a
-    pair of bodies.
+    """Answer of BodyDistances: each two bodies within the distance, a row a pair.
 
-    Rows ascend by the first body, then by the second.
+    A row has their nearest triangles. Rows ascend by the first body, then by the second.
     """
 
     def __len__(self) -> int: ...
