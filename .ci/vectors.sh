@@ -7,9 +7,9 @@
 # show it. PROGRAM is nearmiss, built with --release. In every function at_once_avx2 of it additions, multiplications,
 # divisions, least and greatest are of packed numbers, but for a few before the loop; wide registers would say less, since a map
 # from f64 to f32 has four of each, and those of f32 in narrow ones. There are 26: twelve maps, each of positions in f32 and in
-# f64, planes of instances, for triangles and for bodies. The smallest, the boxes at the start of a step, has 24 in f32. Eight are mixed: directions have
-# a root if there is a gap, which no vector has, so that three of four are mostly of single numbers; and of all signs at once a
-# half is. Only if x86-64 is the machine.
+# f64, planes of instances, for triangles and for bodies. The smallest, the boxes at the start of a step, has 24 in f32. Eight
+# are mixed: directions have a root if there is a gap, which no vector has, so that three of four are mostly of single numbers;
+# and of all signs at once a half is. Only if x86-64 is the machine.
 set -euo pipefail
 
 # Arithmetic of packed and of single numbers, of each function of a disassembly.

@@ -85,6 +85,7 @@ class Coal:
             body.computeAABB()
         boxes = [body.getAABB() for body in self.objects]
         self.low, self.high = np.array([box.min_ for box in boxes]), np.array([box.max_ for box in boxes])
+        self.near = {margin: self.pairs(margin) for margin in (0, *WITHIN)}
 
     def pairs(self, margin):
         """Pairs of bodies whose boxes are within the margin, by numpy."""
@@ -105,17 +106,17 @@ class Coal:
 
     def touching(self):
         request = self.request(1)
-        return sum(self.collides(a, b, request) > 0 for a, b in self.pairs(0))
+        return sum(self.collides(a, b, request) > 0 for a, b in self.near[0])
 
     def crossing(self):
         request = self.request(10**7)
-        return sum(self.collides(a, b, request) for a, b in self.pairs(0))
+        return sum(self.collides(a, b, request) for a, b in self.near[0])
 
     def distances(self, within):
         """As a careful user does: who is within, then the distance of those that do not touch."""
         near, touches, total = self.request(1, within), self.request(1), 0.0
         count = 0
-        for a, b in self.pairs(within):
+        for a, b in self.near[within]:
             if self.collides(a, b, near) > 0:
                 count += 1
                 if self.collides(a, b, touches) == 0:
@@ -192,7 +193,7 @@ def main():
             own = quaternions if isinstance(program, Nearmiss) else turns
             clock(program, "poses", lambda: program.place(places, own))
             if isinstance(program, Fcl):
-                pairs = all_of[-2].pairs(0)
+                pairs = all_of[-2].near[0]
                 clock(program, "touching", lambda: sum(n > 0 for n in program.count(pairs, 1)))
                 clock(program, "crossing triangles", lambda: sum(program.count(pairs, 10**6)))
                 continue
