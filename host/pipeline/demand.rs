@@ -39,18 +39,15 @@ impl Demand {
     /// Returns the demand of a query whose tolerance was chosen.
     pub fn new(query: &Query) -> Demand {
         let Some(ListedRows { bytes, within, advice }) = query.rows() else { return Demand::default() };
-        let counters: &[Counter] = if query.kind().is_of_features() {
+        let kind = query.kind();
+        let counters: &[Counter] = if kind.is_of_features() {
             &[counter::VF_HITS, counter::EE_HITS]
+        } else if kind == QueryKind::BodyPairs {
+            &[counter::MEETING_BODIES]
+        } else if kind == QueryKind::BodyDistances {
+            &[counter::NEAR_BODIES]
         } else {
-            match query.kind() {
-                QueryKind::BodyPairs => &[counter::MEETING_BODIES],
-                QueryKind::BodyDistances => &[counter::NEAR_BODIES],
-                QueryKind::Discrete
-                | QueryKind::Continuous
-                | QueryKind::Earliest
-                | QueryKind::Near
-                | QueryKind::Distance => &[counter::CONTACTS],
-            }
+            &[counter::CONTACTS]
         };
         Demand { row: bytes as u64, counters, within, advice, before: 0 }
     }
