@@ -2,8 +2,9 @@
 
 use crate::abi::{Candidate, InstanceTables, NodePair, Pair, Relation, Span};
 use crate::bvh::tiles::TILE;
-use crate::exec::Lane;
+use crate::exec::{Lane, OPEN, RowMap};
 use crate::math::{Vec3, rigid};
+use crate::prim::at_once::meets_at_once;
 
 /// A triangle of a body, by its place in a tile.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +30,27 @@ impl PlacedTriangle {
     #[inline(always)]
     pub fn number<L: Lane>(self, lane: &L, tables: &InstanceTables) -> u32 {
         lane.read(tables.bodies, self.body).triangle + lane.read(tables.leaves, self.place).number
+    }
+}
+
+/// All signs of two placed triangles: [`APART`], [`MEET`], or [`OPEN`] if f64 does not decide.
+pub struct Signs;
+
+/// Result for two that are apart.
+pub const APART: u32 = 0;
+/// For two that share a point.
+pub const MEET: u32 = 1;
+
+impl RowMap for Signs {
+    type Number = f64;
+    type Row = [[Vec3<f64>; 3]; 2];
+    #[inline(always)]
+    fn at_once(&self, [p, q]: [[Vec3<f64>; 3]; 2]) -> u32 {
+        match meets_at_once(p, q) {
+            Some(true) => MEET,
+            Some(false) => APART,
+            None => OPEN,
+        }
     }
 }
 

@@ -25,6 +25,15 @@ use core::ops::RangeInclusive;
 /// The corners of a triangle.
 pub type Corners<R> = [Vec3<R>; 3];
 
+/// The least positive number: the distance of triangles that share no point if rounding gives 0.
+pub const BARELY: f64 = f64::from_bits(1);
+
+/// How far apart two triangles are that share no point; above 0.
+#[inline(always)]
+pub fn apart<R: Real>([p, q]: &[Corners<R>; 2]) -> f64 {
+    Nearest::of(p, q).distance.greater(BARELY)
+}
+
 /// The nearest points of two triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
@@ -57,6 +66,20 @@ fn turned<R: Real>([a, b, c]: Corners<R>) -> Corners<R> {
 }
 
 impl Nearest {
+    /// The points themselves.
+    #[inline(always)]
+    pub fn points<R: Real>(&self, triangles: &[Corners<R>; 2]) -> [[f64; 3]; 2] {
+        let mut points = [[0.0; 3]; 2];
+        let mut k = 0;
+        while k < 2 {
+            let [x, y, z] = triangles[k].map(|corner| corner.map(|x| x.wide()));
+            let [s, t] = self.at[k];
+            points[k] = (x + (y - x) * s + (z - x) * t).0;
+            k += 1;
+        }
+        points
+    }
+
     /// Farther than everything.
     const NONE: Nearest = Nearest { distance: f64::INFINITY, at: [[0.0; 2]; 2] };
 

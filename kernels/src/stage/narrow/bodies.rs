@@ -28,36 +28,11 @@
 use super::discrete::boxes_apart;
 use super::{Entries, append_each, stride};
 use crate::abi::{BodiesNarrowArgs, NearestHit, Pair};
-use crate::bvh::placing::{PlacedTriangle, candidate, key};
-use crate::exec::{Block, Lane, OPEN, RowMap};
-use crate::math::{Real, Vec3};
-use crate::prim::at_once::meets_at_once;
-use crate::prim::nearest::{Corners, Nearest, gap};
+use crate::bvh::placing::{MEET, PlacedTriangle, Signs, candidate, key};
+use crate::exec::{Block, Lane, OPEN};
+use crate::math::Real;
+use crate::prim::nearest::{BARELY, Corners, Nearest, apart, gap};
 use crate::prim::tri_tri::{Certain, meets};
-
-/// The least positive number: the distance of triangles that share no point if rounding gives 0.
-const BARELY: f64 = f64::from_bits(1);
-
-/// All signs of two triangles.
-struct AllSigns;
-
-/// Result for two that are apart.
-const APART: u32 = 0;
-/// For two that share a point.
-const MEET: u32 = 1;
-
-impl RowMap for AllSigns {
-    type Number = f64;
-    type Row = [[Vec3<f64>; 3]; 2];
-    #[inline(always)]
-    fn at_once(&self, [p, q]: [[Vec3<f64>; 3]; 2]) -> u32 {
-        match meets_at_once(p, q) {
-            Some(true) => MEET,
-            Some(false) => APART,
-            None => OPEN,
-        }
-    }
-}
 
 /// A candidate: its relation, its triangles, and its key.
 #[derive(Clone, Copy)]
@@ -96,10 +71,19 @@ impl Given {
     }
 }
 
-/// How far apart triangles are that share no point.
+/// Runs `body` for each candidate, a lane each, in a grid of any size.
 #[inline(always)]
-fn apart([p, q]: &[Corners<f64>; 2]) -> f64 {
-    Nearest::of(p, q).distance.greater(BARELY)
+fn each<B: Block>(block: &mut B, args: &BodiesNarrowArgs, mut body: impl FnMut(&B::Lane, Given)) {
+    let count = args.pairs.listed(block);
+    stride(block, count, |block, base| {
+        block.phase(|lane| {
+            let i = base + lane.lane();
+            if i < count {
+                body(lane, Given::of(lane, args, args.pairs.get(lane, i)));
+            }
+            lane.meet();
+        });
+    });
 }
 
 /// Signs of candidates whose boxes overlap: words, and what they do not decide.
@@ -108,7 +92,7 @@ pub fn touch<B: Block>(block: &mut B, args: &BodiesNarrowArgs) {
     let mut entries = Entries::new(block);
     stride(block, count, |block, base| {
         block.map_rows(
-            &AllSigns,
+            &Signs,
             |lane| {
                 let i = base + lane.lane();
                 if i >= count {
@@ -133,18 +117,10 @@ pub fn touch<B: Block>(block: &mut B, args: &BodiesNarrowArgs) {
 
 /// Exact signs of candidates that are left.
 pub fn exact<B: Block>(block: &mut B, args: &BodiesNarrowArgs) {
-    let count = args.pairs.listed(block);
-    stride(block, count, |block, base| {
-        block.phase(|lane| {
-            let i = base + lane.lane();
-            if i < count {
-                let given = Given::of(lane, args, args.pairs.get(lane, i));
-                if !given.is_known(lane, args) && certainly_meet(given.corners(lane, args)) {
-                    given.touches(lane, args);
-                }
-            }
-            lane.meet();
-        });
+    each(block, args, |lane, given| {
+        if !given.is_known(lane, args) && certainly_meet(given.corners(lane, args)) {
+            given.touches(lane, args);
+        }
     });
 }
 
@@ -165,62 +141,38 @@ pub fn meeting<B: Block>(block: &mut B, args: &BodiesNarrowArgs) {
 
 /// The least distances of bodies that share no point.
 pub fn least<B: Block>(block: &mut B, args: &BodiesNarrowArgs) {
-    let count = args.pairs.listed(block);
-    stride(block, count, |block, base| {
-        block.phase(|lane| {
-            let i = base + lane.lane();
-            if i < count {
-                let given = Given::of(lane, args, args.pairs.get(lane, i));
-                if !given.bodies_touch(lane, args) {
-                    let corners = given.corners(lane, args);
-                    if gap(&corners[0], &corners[1]) < args.words.bound(lane, given.relation) {
-                        args.words.lower(lane, given.relation, apart(&corners));
-                    }
-                }
+    each(block, args, |lane, given| {
+        if !given.bodies_touch(lane, args) {
+            let corners = given.corners(lane, args);
+            if gap(&corners[0], &corners[1]) < args.words.bound(lane, given.relation) {
+                args.words.lower(lane, given.relation, apart(&corners));
             }
-            lane.meet();
-        });
+        }
     });
 }
 
 /// The first candidates at these distances.
 pub fn first<B: Block>(block: &mut B, args: &BodiesNarrowArgs) {
-    let count = args.pairs.listed(block);
-    stride(block, count, |block, base| {
-        block.phase(|lane| {
-            let i = base + lane.lane();
-            if i < count {
-                let given = Given::of(lane, args, args.pairs.get(lane, i));
-                let known = lane.fetch_load(args.words.first, given.relation);
-                if known < given.key && !given.bodies_touch(lane, args) {
-                    let best = args.words.bound_of(lane.read(args.words.least, given.relation));
-                    let corners = given.corners(lane, args);
-                    if gap(&corners[0], &corners[1]) <= best && apart(&corners) == best {
-                        lane.fetch_max(args.words.first, given.relation, given.key);
-                    }
-                }
+    each(block, args, |lane, given| {
+        let known = lane.fetch_load(args.words.first, given.relation);
+        if known < given.key && !given.bodies_touch(lane, args) {
+            let best = args.words.bound_of(lane.read(args.words.least, given.relation));
+            let corners = given.corners(lane, args);
+            if gap(&corners[0], &corners[1]) <= best && apart(&corners) == best {
+                lane.fetch_max(args.words.first, given.relation, given.key);
             }
-            lane.meet();
-        });
+        }
     });
 }
 
 /// The nearest triangles of each pair of bodies, with their nearest points.
 pub fn nearest<B: Block>(block: &mut B, args: &BodiesNarrowArgs) {
-    let count = args.pairs.listed(block);
-    stride(block, count, |block, base| {
-        block.phase(|lane| {
-            let i = base + lane.lane();
-            if i < count {
-                let given = Given::of(lane, args, args.pairs.get(lane, i));
-                let touching = lane.read(args.words.touching, given.relation);
-                let first = lane.read(args.words.first, given.relation);
-                if (if touching != 0 { touching } else { first }) == given.key {
-                    args.nearest.push(lane, hit(given.key, given.corners(lane, args), touching != 0));
-                }
-            }
-            lane.meet();
-        });
+    each(block, args, |lane, given| {
+        let touching = lane.read(args.words.touching, given.relation);
+        let first = lane.read(args.words.first, given.relation);
+        if (if touching != 0 { touching } else { first }) == given.key {
+            args.nearest.push(lane, hit(given.key, given.corners(lane, args), touching != 0));
+        }
     });
 }
 
@@ -231,13 +183,6 @@ fn hit(key: u64, triangles: [Corners<f64>; 2], meets: bool) -> NearestHit {
     let [p, q] = &triangles;
     let found = if meets { Nearest::meeting(p, q) } else { Nearest::of(p, q) };
     let distance = if meets { 0.0 } else { found.distance.greater(BARELY) };
-    let mut points = [[0.0; 3]; 2];
-    let mut k = 0;
-    while k < 2 {
-        let [x, y, z] = triangles[k];
-        let [s, t] = found.at[k];
-        points[k] = (x + (y - x) * s + (z - x) * t).0;
-        k += 1;
-    }
+    let points = found.points(&triangles);
     NearestHit { a: (!key >> 32) as u32, b: !key as u32, distance, at: found.at, points }
 }

@@ -23,22 +23,13 @@ use super::stride;
 use crate::abi::{LeastArgs, NearestHit, Pair, counter};
 use crate::exec::{Block, Lane};
 use crate::math::Real;
-use crate::prim::nearest::{Corners, Nearest, gap};
-
-/// The least positive number: the distance of triangles that share no point if rounding gives 0.
-const BARELY: f64 = f64::from_bits(1);
+use crate::prim::nearest::{BARELY, Corners, Nearest, apart, gap};
 
 /// The corners of both triangles.
 #[inline(always)]
 fn corners<R: Real, L: Lane>(lane: &L, args: &LeastArgs<R>, pair: Pair) -> [Corners<R>; 2] {
     [pair.a, pair.b]
         .map(|triangle| lane.read(args.faces, triangle).map(|vertex| lane.read(args.positions, vertex).at))
-}
-
-/// How far apart triangles are of which none share a point.
-#[inline(always)]
-fn apart<R: Real>([p, q]: &[Corners<R>; 2]) -> f64 {
-    Nearest::of(p, q).distance.greater(BARELY)
 }
 
 /// How many candidates are to be measured: none if some share a point.
@@ -115,14 +106,7 @@ pub fn nearest<R: Real, B: Block>(block: &mut B, args: &LeastArgs<R>) {
             let triangles = corners(lane, args, pair);
             let [p, q] = &triangles;
             let found = if meets { Nearest::meeting(p, q) } else { Nearest::of(p, q) };
-            let mut points = [[0.0; 3]; 2];
-            let mut k = 0;
-            while k < 2 {
-                let [x, y, z] = triangles[k].map(|corner| corner.map(|x| x.wide()));
-                let [s, t] = found.at[k];
-                points[k] = (x + (y - x) * s + (z - x) * t).0;
-                k += 1;
-            }
+            let points = found.points(&triangles);
             args.nearest.push(lane, NearestHit { a: pair.a, b: pair.b, distance, at: found.at, points });
         }
         lane.meet();

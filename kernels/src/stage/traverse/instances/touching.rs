@@ -14,34 +14,11 @@
 
 use super::triangles::{LANES, Take, triangles};
 use crate::abi::{Candidate, InstancesArgs, NodePair, TouchingArgs, counter};
-use crate::bvh::placing::{key, triangles_of};
-use crate::exec::{Block, Lane, OPEN, RowMap, Shared, Slot};
-use crate::math::Vec3;
-use crate::prim::at_once::meets_at_once;
+use crate::bvh::placing::{APART, MEET, Signs, key, triangles_of};
+use crate::exec::{Block, Lane, OPEN, Shared, Slot};
 
 /// Shared memory of a block: that of `triangles`, and a word.
 pub const SHARED: u32 = super::triangles::SHARED + 16;
-
-/// All signs of two triangles.
-struct Signs;
-
-/// Result for two that are apart.
-const APART: u32 = 0;
-/// For two that share a point.
-const MEET: u32 = 1;
-
-impl RowMap for Signs {
-    type Number = f64;
-    type Row = [[Vec3<f64>; 3]; 2];
-    #[inline(always)]
-    fn at_once(&self, [p, q]: [[Vec3<f64>; 3]; 2]) -> u32 {
-        match meets_at_once(p, q) {
-            Some(true) => MEET,
-            Some(false) => APART,
-            None => OPEN,
-        }
-    }
-}
 
 /// Decides triangles at once, until two share a point.
 struct Decide<'a, B: Block> {
