@@ -6,13 +6,11 @@ use crate::device::{Ahead, Device};
 use crate::error::Error;
 use crate::pipeline::counts::Counts;
 use crate::pipeline::launch;
-use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{GrowableOutput, List, Named};
 use crate::pipeline::order::Ordering;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::Listed;
 use crate::query::Query;
-use crate::scene::Body;
 use nearmiss_kernels::abi::{BodiesNarrowArgs, BodyTolerance, NearestHit, Output, Pair, Span, counter};
 use nearmiss_kernels::entry;
 
@@ -134,8 +132,6 @@ impl<R: Precision> Narrow<R> for BodiesNarrow {
     fn between<'a>(&'a self, _: &'a Features) -> Vec<Named<'a>> {
         Vec::new()
     }
-
-    fn place(&mut self, _: &[Body], _: &Layout) {}
 
     /// The host orders rows: a pair of bodies has one.
     fn ordering(&mut self) -> Option<&mut dyn Ordering> {
