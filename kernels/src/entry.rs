@@ -199,7 +199,6 @@ kernels! {
     narrow_least_f64: nearest::least::<f64, B>, [LeastArgs<f64>], RUNG, 0;
     narrow_witness_f32: nearest::witness::<f32, B>, [LeastArgs<f32>], RUNG, 0;
     narrow_witness_f64: nearest::witness::<f64, B>, [LeastArgs<f64>], RUNG, 0;
-    narrow_bodies_touch: narrow_bodies::touch, [BodiesNarrowArgs], WIDE, 0;
     narrow_bodies_exact: narrow_bodies::exact, [BodiesNarrowArgs], NARROW, 0;
     narrow_bodies_meeting: narrow_bodies::meeting, [BodiesNarrowArgs], WIDE, 0;
     narrow_bodies_least: narrow_bodies::least, [BodiesNarrowArgs], RUNG, 0;

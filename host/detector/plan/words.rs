@@ -17,7 +17,7 @@ pub const STAGES: [(&str, &str); 9] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 87] = [
+const KERNELS: [(&str, &str); 86] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
     ("place_turns", "rotation vectors and paths of bodies that turn"),
     ("place", "poses applied, uploads put in place, other bodies at rest"),
@@ -91,7 +91,6 @@ const KERNELS: [(&str, &str); 87] = [
     ("narrow_least", "the least distance of triangles"),
     ("narrow_witness", "the first pair with the least distance"),
     ("narrow_nearest", "nearest points of that pair"),
-    ("narrow_bodies_touch", "signs in f64 of candidates of two bodies"),
     ("narrow_bodies_exact", "exact signs of those left uncertain"),
     ("narrow_bodies_meeting", "pairs of bodies that share a point"),
     ("narrow_bodies_least", "the least distance of each pair of bodies"),

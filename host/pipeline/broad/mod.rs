@@ -65,6 +65,9 @@ pub struct Placeable {
     pub tile_pairs: Span<NodePair>,
     /// Words of each relation; empty except for queries of pairs of bodies.
     pub words: RelationWords,
+    /// Of distances of bodies, what is left of those that share a point: candidates, and their pairs
+    /// of tiles.
+    pub left: (Span<Pair>, Span<NodePair>),
 }
 
 /// A range of the moving tiles, in units of 1/2^32 of their number. A pair belongs to the share

@@ -121,7 +121,8 @@ impl<F: Fn(u32) -> FrameBox> Builder<F> {
             let volume = triangles.iter().map(|&triangle| (self.boxed)(triangle)).reduce(FrameBox::merge);
             self.order.extend_from_slice(triangles);
             self.order.resize((self.tiles.len() + 1) * FAN, NONE);
-            let tile = MeshNode { volume: volume.unwrap_or(FrameBox::EMPTY), first: 0, count: 0 };
+            let first = triangles.first().copied().unwrap_or(0);
+            let tile = MeshNode { volume: volume.unwrap_or(FrameBox::EMPTY), first, count: 0 };
             self.tiles.push(tile);
             return tile;
         }
@@ -184,6 +185,7 @@ mod tests {
             if triangle.vertices != faces[number as usize]
                 || volume != corners_box(&triangle.corners)
                 || !holds(&tiles.tiles[place / FAN].volume, &volume)
+                || tiles.tiles[place / FAN].first > number
             {
                 return Err(format!("place {place} is outside"));
             }
@@ -220,7 +222,8 @@ mod tests {
     #[test]
     fn a_wrong_tile_is_noticed() {
         let body = soup(1_848, 4, false);
-        let faults: [fn(&mut MeshTiles); 4] = [
+        let faults: [fn(&mut MeshTiles); 5] = [
+            |tiles| tiles.tiles[7].first += 1,
             |tiles| tiles.tiles[7].volume.hi[1] = tiles.tiles[7].volume.lo[1],
             |tiles| tiles.leaves[3].number = tiles.leaves[90].number,
             |tiles| tiles.above[1].count -= 1,

@@ -24,8 +24,6 @@ enum Rows {
 
 /// The lists of a query of pairs of bodies.
 pub struct BodiesNarrow {
-    /// Candidates that signs in f64 do not decide; of pairs alone, the search lists these.
-    uncertain: List<Pair>,
     rows: Rows,
 }
 
@@ -36,7 +34,7 @@ impl BodiesNarrow {
     /// Device errors.
     pub fn pairs(device: &Device, first: Option<u32>, few: usize) -> Result<Self, Error> {
         let meeting = List::new(device, "bodies that share a point", counter::MEETING_BODIES, few)?;
-        BodiesNarrow::new(device, Rows::Meeting(meeting, first), 0)
+        Ok(BodiesNarrow { rows: Rows::Meeting(meeting, first) })
     }
 
     /// Allocates the lists of distances, with room for `few`.
@@ -45,16 +43,11 @@ impl BodiesNarrow {
     /// Device errors.
     pub fn distances(device: &Device, few: usize) -> Result<Self, Error> {
         let nearest = List::new(device, "nearest triangles of bodies", counter::NEAR_BODIES, few)?;
-        BodiesNarrow::new(device, Rows::Nearest(nearest), few)
+        Ok(BodiesNarrow { rows: Rows::Nearest(nearest) })
     }
 
-    fn new(device: &Device, rows: Rows, few: usize) -> Result<Self, Error> {
-        let uncertain = List::new(device, "uncertain triangle pairs", counter::UNCERTAIN, few)?;
-        Ok(BodiesNarrow { uncertain, rows })
-    }
-
-    /// Arguments over candidates.
-    fn args<R: Precision>(&self, given: &NarrowContext<R>) -> Result<BodiesNarrowArgs, Error> {
+    /// Arguments over candidates, and of distances over those left of bodies that share a point.
+    fn args<R: Precision>(&self, given: &NarrowContext<R>) -> Result<[BodiesNarrowArgs; 2], Error> {
         let Some(placeable) = given.placeable else {
             return Err(Error::Bug { what: "pairs of bodies are instances, and there are none".into() });
         };
@@ -62,18 +55,20 @@ impl BodiesNarrow {
             Rows::Meeting(list, _) => (list.output(given.counters), Output::EMPTY),
             Rows::Nearest(list) => (Output::EMPTY, list.output(given.counters)),
         };
-        Ok(BodiesNarrowArgs {
+        let all = BodiesNarrowArgs {
             tables: placeable.tables,
             relations: given.counters.output(placeable.relations, counter::RELATIONS),
             tile_pairs: placeable.tile_pairs,
             words: placeable.words,
             pairs: given.pairs,
-            uncertain: self.uncertain.output(given.counters),
             meeting,
             nearest,
             any: matches!(self.rows, Rows::Meeting(..)).into(),
-            pad: 0,
-        })
+            of_touching: 0,
+        };
+        let (left, tile_pairs) = placeable.left;
+        let pairs = given.counters.output(left, counter::TOUCHING_PAIRS);
+        Ok([all, BodiesNarrowArgs { pairs, tile_pairs, of_touching: 1, ..all }])
     }
 }
 
@@ -86,8 +81,8 @@ impl<R: Precision> Narrow<R> for BodiesNarrow {
     }
 
     fn run(&mut self, step: usize, given: &NarrowContext<R>) -> Result<(), Error> {
-        let (device, args) = (given.device, self.args(given)?);
-        let candidates = given.pairs.room() as usize;
+        let (device, [args, left]) = (given.device, self.args(given)?);
+        let [candidates, of_left] = [args, left].map(|args| args.pairs.room() as usize);
         match (&self.rows, step) {
             (Rows::Meeting(..), 0) => {
                 launch::striding::<entry::narrow_bodies_exact>(device, candidates, &args)
@@ -97,16 +92,14 @@ impl<R: Precision> Narrow<R> for BodiesNarrow {
                 launch::striding::<entry::narrow_bodies_meeting>(device, relations, &args)
             }
             (Rows::Nearest(_), 0) => {
-                launch::striding::<entry::narrow_bodies_touch>(device, candidates, &args)?;
-                let left = BodiesNarrowArgs { pairs: args.uncertain, ..args };
-                let room = self.uncertain.capacity();
-                launch::striding::<entry::narrow_bodies_exact>(device, room, &left)
+                launch::striding::<entry::narrow_bodies_exact>(device, of_left, &left)
             }
             (Rows::Nearest(_), 1) => {
                 launch::striding::<entry::narrow_bodies_least>(device, candidates, &args)?;
                 launch::striding::<entry::narrow_bodies_first>(device, candidates, &args)
             }
             (Rows::Nearest(_), _) => {
+                launch::striding::<entry::narrow_bodies_nearest>(device, of_left, &left)?;
                 launch::striding::<entry::narrow_bodies_nearest>(device, candidates, &args)
             }
         }
@@ -121,9 +114,8 @@ impl<R: Precision> Narrow<R> for BodiesNarrow {
 
     fn lists<'a>(&'a mut self, step: usize, _: &'a mut Features) -> Vec<&'a mut dyn GrowableOutput> {
         match (&mut self.rows, step) {
-            (Rows::Meeting(..), 0) | (Rows::Nearest(_), 1) => Vec::new(),
+            (Rows::Meeting(..), 0) | (Rows::Nearest(_), 0 | 1) => Vec::new(),
             (Rows::Meeting(list, _), _) => vec![list],
-            (Rows::Nearest(_), 0) => vec![&mut self.uncertain],
             (Rows::Nearest(list), _) => vec![list],
         }
     }

@@ -7,6 +7,19 @@ use super::{
 use crate::math::Real;
 use bytemuck::Zeroable;
 
+impl TouchingArgs {
+    /// Only the first pair of bodies is wanted.
+    pub const FIRST: u32 = 1;
+    /// The first pair of triangles of each pair of bodies is wanted, not a flag.
+    pub const KEYS: u32 = 2;
+
+    /// Whether this is wanted.
+    #[inline(always)]
+    pub const fn has(&self, what: u32) -> bool {
+        self.what & what != 0
+    }
+}
+
 arguments! {
     /// Words of each relation. All begin as 0 and only grow.
     RelationWords {
@@ -40,14 +53,14 @@ arguments! {
         /// Words of each relation.
         words: RelationWords,
     }
-    /// `traverse_touching`: pairs of tiles to bodies that share a point, and undecided candidates.
+    /// `traverse_touching`: pairs of tiles to bodies that share a point, and candidates that are left.
     TouchingArgs {
-        /// Bodies, and lists; candidates are those that signs in f64 do not decide.
+        /// Bodies, and lists.
         of: InstancesArgs,
         /// Words of each relation.
         words: RelationWords,
-        /// 1 if only the first pair of bodies is wanted, else 0.
-        only_first: u32,
+        /// [`TouchingArgs::FIRST`], [`TouchingArgs::KEYS`], or 0.
+        what: u32,
         /// Zero.
         pad: u32,
     }
@@ -63,16 +76,14 @@ arguments! {
         words: RelationWords,
         /// Candidates.
         pairs: Output<Pair>,
-        /// Out: candidates that signs in f64 do not decide.
-        uncertain: Output<Pair>,
         /// Out: pairs of bodies that share a point.
         meeting: Output<Pair>,
         /// Out: the nearest triangles of each pair of bodies.
         nearest: Output<NearestHit>,
         /// 1 if one pair of triangles that share a point is as good as another, else 0.
         any: u32,
-        /// Zero.
-        pad: u32,
+        /// 1 if candidates are those left of bodies that share a point, else 0.
+        of_touching: u32,
     }
     /// `refit_meshes_vertices`: vertices of the scene to those of meshes.
     MeshVerticesArgs<R: Real> {

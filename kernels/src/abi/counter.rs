@@ -162,6 +162,12 @@ counters! { 0;
     RELATIONS,
     /// Pairs of nodes of two bodies that may meet, level by level.
     NODE_PAIRS: [MESH_LEVELS],
+    /// Pairs of nodes of two bodies that may hold their least distance, level by level.
+    CLOSE_NODES: [MESH_LEVELS],
+    /// Pairs of tiles of two bodies that may.
+    CLOSE_TILES,
+    /// Candidates that are left of bodies that share a point.
+    TOUCHING_PAIRS,
     /// Pairs of bodies that share a point.
     MEETING_BODIES,
     /// The complement of the first pair of bodies that is known to share a point: its smaller body

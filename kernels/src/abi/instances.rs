@@ -56,7 +56,7 @@ const _: () = assert!(size_of::<InstanceFrame>() == 128);
 pub struct MeshNode {
     /// Around everything below, in the frame of the mesh.
     pub volume: FrameBox,
-    /// The first node below it; of a tile nothing.
+    /// The first node below it; of a tile the least number of its triangles in the mesh.
     pub first: u32,
     /// Nodes below it, at most 32; of a tile 0.
     pub count: u32,

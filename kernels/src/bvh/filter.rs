@@ -48,7 +48,7 @@ impl FilterArgs {
             return together;
         }
         let [p, q] = [p, q].map(|filter| filter.who & NodeFilter::NUMBER);
-        if !self.left_out.is_empty() && is_left_out(p, q, |i| lane.read(self.left_out, i)) {
+        if !self.left_out.is_empty() && listed(lane, self.left_out, p, q) {
             return false;
         }
         if self.bodies.is_empty() {
@@ -91,6 +91,13 @@ impl NodeFilter {
         let last = if self.last > other.last { self.last } else { other.last };
         NodeFilter { who: MIXED | if p < q { p } else { q }, last, hub, pad: 0 }
     }
+}
+
+/// [`is_left_out`] of a list on the device. Out of line, so that scenes without a list have no more
+/// instructions in their loops.
+#[inline(never)]
+fn listed<L: Lane>(lane: &L, list: Span<u32>, p: u32, q: u32) -> bool {
+    is_left_out(p, q, |i| lane.read(list, i))
 }
 
 /// Whether the list of pairs that are left out has two different bodies: see

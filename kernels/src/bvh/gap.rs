@@ -98,10 +98,14 @@ pub fn farthest(relation: &Relation, a: &FrameBox, b: &FrameBox) -> f64 {
 }
 
 /// At least the computed distance of two triangles of which two points have that squared distance in
-/// the frame of the first body, up to an error of `slack` of each coordinate.
+/// the frame of the first body, up to an error of `slack` of each coordinate. The square may be one
+/// of f32, from coordinates of f32 within both radii and the distance of both centres: it errs by
+/// `6u` of itself, and the length by `3u` of that sum, or by a root of the smallest normal number if
+/// products underflow. The errors of coordinates are `1.74 slack`, and the rest of two is `8u` of the
+/// sum.
 #[inline(always)]
 pub fn apart(relation: &Relation, squared: f64) -> f64 {
-    Real::sqrt(squared) * FAR + 2.0 * relation.slack.wide()
+    Real::sqrt(squared.greater(f32::MIN_POSITIVE.wide())) * FAR + 2.0 * relation.slack.wide()
 }
 
 impl RelationWords {

@@ -1,6 +1,7 @@
 //! The search of queries of pairs of bodies: relations and their words, down to pairs of triangles
 //! that may decide a row.
 
+use super::descent::{self, Descent};
 use super::{BodyGroups, striding, without_instances};
 use crate::device::Device;
 use crate::error::Error;
@@ -12,7 +13,8 @@ use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::precision::Precision;
 use crate::query::Query;
 use nearmiss_kernels::abi::{
-    InstancesWithinArgs, NodesWithinArgs, RelationWords, RelationsWithinArgs, TouchingArgs, counter,
+    InstancesWithinArgs, NodesWithinArgs, Output, Pair, RelationWords, RelationsArgs, RelationsWithinArgs,
+    Span, TouchingArgs, counter,
 };
 use nearmiss_kernels::entry;
 
@@ -43,6 +45,15 @@ pub struct PairSearch {
     /// The words of [`RelationWords`]: bounds, triangles that share a point, nearest triangles. Each
     /// has room for every relation.
     words: [List<u64>; 3],
+    /// Of distances alone.
+    close: Option<Close>,
+}
+
+/// The lists of distances, behind those of bodies that share a point.
+struct Close {
+    descent: Descent,
+    /// What is left of bodies that share a point: those triangles that do, and undecided ones.
+    left: List<Pair>,
 }
 
 impl PairSearch {
@@ -54,7 +65,7 @@ impl PairSearch {
     pub fn new(device: &Device, layout: &Layout, query: &Query, margin: f32) -> Result<Self, Error> {
         let mut bodies = BodyGroups::new(device, layout)?;
         bodies.groups.set_margin(margin);
-        let room = bodies.relations.capacity();
+        let (wanted, room) = (Wanted::of(query), bodies.relations.capacity());
         // One counter counts relations and their words, so all have the same room.
         let words = |name| List::new(device, name, counter::RELATIONS, room);
         let words = [
@@ -62,7 +73,14 @@ impl PairSearch {
             words("related bodies that share a point")?,
             words("nearest triangles of related bodies")?,
         ];
-        Ok(PairSearch { bodies, wanted: Wanted::of(query), words })
+        let close = match wanted {
+            Wanted::Touching { .. } => None,
+            Wanted::Within(_) => Some(Close {
+                descent: Descent::new(device, descent::CLOSE, room)?,
+                left: List::new(device, "triangles that may share a point", counter::TOUCHING_PAIRS, room)?,
+            }),
+        };
+        Ok(PairSearch { bodies, wanted, words, close })
     }
 
     /// The words, for kernels.
@@ -72,42 +90,45 @@ impl PairSearch {
         RelationWords { least, touching, first, within }
     }
 
+    /// Finds related bodies that share a point: `what` of [`TouchingArgs`]. Lists what is left.
     fn touching<R: Precision>(
         &mut self,
         given: &BroadContext<R>,
-        candidates: &Candidates,
-        only_first: bool,
+        args: &RelationsArgs,
+        (what, left): (u32, Output<Pair>),
     ) -> Result<(), Error> {
-        let (device, words) = (given.device, self.words());
-        let room = self.bodies.body_pairs.capacity();
-        let args = self.bodies.relations_args(given, candidates.counters)?;
-        launch::striding::<entry::traverse_relations>(device, room, &args)?;
-        self.bodies.descend(given, &args, |args| striding::<entry::traverse_nodes>(device, args))?;
-        let of = self.bodies.instances_args(&args, candidates);
-        let args = TouchingArgs { of, words, only_first: only_first.into(), pad: 0 };
-        striding::<entry::traverse_touching>(device, &args)
+        let device = given.device;
+        let descent = &mut self.bodies.descent;
+        descent.run(given, args, |args| striding::<entry::traverse_nodes>(device, args))?;
+        let of = descent.triangles(args, left);
+        striding::<entry::traverse_touching>(device, &TouchingArgs { of, words: self.words(), what, pad: 0 })
     }
 
+    /// Lists candidates of related bodies that are not known to share a point.
     fn within<R: Precision>(
         &mut self,
         given: &BroadContext<R>,
+        of: &RelationsArgs,
         candidates: &Candidates,
     ) -> Result<(), Error> {
         let (device, words) = (given.device, self.words());
-        let (pairs, relations) = (self.bodies.body_pairs.capacity(), self.bodies.relations.capacity());
-        let of = self.bodies.relations_args(given, candidates.counters)?;
-        let args = RelationsWithinArgs { of, words };
-        launch::striding::<entry::traverse_relations_within>(device, pairs, &args)?;
-        self.bodies.descend(given, &of, |of| {
-            let args = NodesWithinArgs { of: *of, words };
-            let room = if of.pairs.room() == 0 { relations } else { of.pairs.room() as usize };
+        let Some(Close { descent, .. }) = &mut self.close else { return Err(without_lists()) };
+        descent.run(given, of, |args| {
+            let args = NodesWithinArgs { of: *args, words };
+            let of_pairs = args.of.pairs.room() as usize;
+            let room = if of_pairs == 0 { of.relations.room() as usize } else { of_pairs };
             launch::striding::<entry::traverse_bounds>(device, room, &args)?;
             striding::<entry::traverse_nodes_within>(device, &args)
         })?;
-        let args = InstancesWithinArgs { of: self.bodies.instances_args(&of, candidates), words };
+        let args = InstancesWithinArgs { of: descent.triangles(of, candidates.pairs), words };
         striding::<entry::traverse_corners>(device, &args)?;
         striding::<entry::traverse_instances_within>(device, &args)
     }
+}
+
+/// Error for a query of distances without its lists: a fault of the pipeline.
+fn without_lists() -> Error {
+    Error::Bug { what: "distances of bodies have lists, and there are none".into() }
 }
 
 impl<R: Precision> CandidateSearch<R> for PairSearch {
@@ -144,20 +165,44 @@ impl<R: Precision> CandidateSearch<R> for PairSearch {
     fn traverse(&mut self, given: &BroadContext<R>, candidates: &Candidates) -> Result<(), Error> {
         // Relations have new numbers each time.
         self.words.iter_mut().try_for_each(List::clear)?;
+        let (device, room) = (given.device, self.bodies.body_pairs.capacity());
+        let args = self.bodies.relations_args(given, candidates.counters)?;
         match self.wanted {
-            Wanted::Touching { only_first } => self.touching(given, candidates, only_first),
-            Wanted::Within(_) => self.within(given, candidates),
+            Wanted::Touching { only_first } => {
+                launch::striding::<entry::traverse_relations>(device, room, &args)?;
+                let what = if only_first { TouchingArgs::FIRST } else { 0 };
+                self.touching(given, &args, (what, candidates.pairs))
+            }
+            Wanted::Within(_) => {
+                let of = RelationsWithinArgs { of: args, words: self.words() };
+                launch::striding::<entry::traverse_relations_within>(device, room, &of)?;
+                let close = self.close.as_ref().ok_or_else(without_lists)?;
+                let left = close.left.output(candidates.counters);
+                self.touching(given, &args, (TouchingArgs::KEYS, left))?;
+                self.within(given, &args, candidates)
+            }
         }
     }
 
     fn lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
         let mut all = self.bodies.all_lists();
         all.extend(self.words.iter_mut().map(|list| list as &mut dyn GrowableOutput));
+        if let Some(close) = &mut self.close {
+            all.extend(close.descent.lists());
+            all.push(&mut close.left);
+        }
         all
     }
 
     fn placeable(&self) -> Option<Placeable> {
-        self.bodies.place(self.words())
+        let met = &self.bodies.descent;
+        match &self.close {
+            None => self.bodies.place(met, self.words(), (Span::EMPTY, Span::EMPTY)),
+            Some(close) => {
+                let left = (close.left.entries(), met.tile_pairs.entries());
+                self.bodies.place(&close.descent, self.words(), left)
+            }
+        }
     }
 
     fn finish(&mut self, counters: &Counts) -> Result<(), Error> {

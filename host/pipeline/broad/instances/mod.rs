@@ -4,6 +4,7 @@
 //! and nodes above them. Pairs of bodies then go down both meshes, a launch a level.
 
 mod bodies;
+mod descent;
 mod groups;
 
 pub use bodies::PairSearch;
@@ -14,16 +15,16 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::pipeline::broad::Checked;
 use crate::pipeline::counts::Counts;
-use crate::pipeline::instances::Instances;
 use crate::pipeline::launch;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::precision::Precision;
 use bytemuck::Zeroable;
+use descent::Descent;
 use groups::Groups;
 use nearmiss_kernels::abi::{
-    Counters, InstanceTables, InstancesArgs, MESH_LEVELS, NodePair, NodesArgs, Output, Pair, Relation,
-    RelationWords, RelationsArgs, Span, TilePairsArgs, TileTrianglesArgs, TraverseFlags, counter,
+    Counters, InstanceTables, NodePair, Output, Pair, Relation, RelationWords, RelationsArgs, Span,
+    TilePairsArgs, TileTrianglesArgs, TraverseFlags, counter,
 };
 use nearmiss_kernels::bv::{Contain, FrameBox};
 use nearmiss_kernels::bvh::Violation;
@@ -50,9 +51,7 @@ pub struct BodyGroups {
     group_pairs: List<Pair>,
     body_pairs: List<Pair>,
     relations: List<Relation>,
-    /// Pairs of nodes after each level but the last.
-    node_pairs: Vec<List<NodePair>>,
-    tile_pairs: List<NodePair>,
+    descent: Descent,
     /// Meshes and bodies of the last traversal.
     tables: Option<InstanceTables>,
     /// Pairs of groups of the first frame in this order, and whether later ones exceed them.
@@ -74,8 +73,7 @@ impl BodyGroups {
             group_pairs: List::new(device, "pairs of groups of bodies", counter::GROUP_PAIRS, own)?,
             body_pairs: List::new(device, "pairs of bodies", counter::BODY_PAIRS, room(PAIRS_A_BODY))?,
             relations: List::new(device, "related bodies", counter::RELATIONS, room(PAIRS_A_BODY))?,
-            node_pairs: Vec::new(),
-            tile_pairs: List::new(device, "pairs of tiles", counter::TILE_PAIRS, room(TILE_PAIRS_A_BODY))?,
+            descent: Descent::new(device, descent::MEETING, room(TILE_PAIRS_A_BODY))?,
             tables: None,
             first: None,
             is_stale: false,
@@ -143,50 +141,22 @@ impl BodyGroups {
         Ok(RelationsArgs { tables, pairs, relations: self.relations.output(counters), counters })
     }
 
-    /// Goes down the meshes of related bodies to pairs of tiles: `launch` a level.
-    fn descend<R: Precision>(
-        &mut self,
-        given: &BroadContext<R>,
-        of: &RelationsArgs,
-        launch: impl Fn(&NodesArgs) -> Result<(), Error>,
-    ) -> Result<(), Error> {
-        let instances: &Instances = given.instances.ok_or_else(without_instances)?;
-        let RelationsArgs { tables, relations, counters, .. } = *of;
-        let tile_pairs = self.tile_pairs.output(counters);
-        let (levels, mut pairs) = (instances.levels.max(1), Output::EMPTY);
-        debug_assert!(levels <= MESH_LEVELS);
-        for level in 0..levels {
-            // After the last level all are pairs of tiles.
-            let is_last = level + 1 == levels;
-            let next = if is_last {
-                Output::EMPTY
-            } else {
-                self.after_level(given.device, level as usize)?.output(counters)
-            };
-            launch(&NodesArgs { tables, relations, pairs, next, tile_pairs, counters })?;
-            pairs = next;
-        }
-        Ok(())
-    }
-
-    /// Returns arguments for the triangles of pairs of tiles.
-    fn instances_args(&self, of: &RelationsArgs, candidates: &Candidates) -> InstancesArgs {
-        let RelationsArgs { tables, relations, counters, .. } = *of;
-        let tile_pairs = self.tile_pairs.output(counters);
-        InstancesArgs { tables, relations, tile_pairs, pairs: candidates.pairs, counters }
-    }
-
     fn all_lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
         let mut all: Vec<&mut dyn GrowableOutput> =
-            vec![&mut self.group_pairs, &mut self.body_pairs, &mut self.relations, &mut self.tile_pairs];
-        all.extend(self.node_pairs.iter_mut().map(|list| list as &mut dyn GrowableOutput));
+            vec![&mut self.group_pairs, &mut self.body_pairs, &mut self.relations];
+        all.extend(self.descent.lists());
         all
     }
 
-    /// Returns what candidates refer to, with these words.
-    fn place(&self, words: RelationWords) -> Option<Placeable> {
-        let (relations, tile_pairs) = (self.relations.entries(), self.tile_pairs.entries());
-        self.tables.map(|tables| Placeable { tables, relations, tile_pairs, words })
+    /// Returns what candidates refer to: those of a descent, with these words and what was left.
+    fn place(
+        &self,
+        of: &Descent,
+        words: RelationWords,
+        left: (Span<Pair>, Span<NodePair>),
+    ) -> Option<Placeable> {
+        let (relations, tile_pairs) = (self.relations.entries(), of.tile_pairs.entries());
+        self.tables.map(|tables| Placeable { tables, relations, tile_pairs, words, left })
     }
 
     /// Notes whether the order of bodies is stale, by a frame's counters.
@@ -194,15 +164,6 @@ impl BodyGroups {
         let pairs = self.group_pairs.demand(counters);
         let first = *self.first.get_or_insert(pairs);
         self.is_stale = pairs > first + first / 4 + STALE;
-    }
-
-    /// Returns the pairs of nodes after a level, made if there are none.
-    fn after_level(&mut self, device: &Device, level: usize) -> Result<&List<NodePair>, Error> {
-        while self.node_pairs.len() <= level {
-            let which = counter::NODE_PAIRS[self.node_pairs.len()];
-            self.node_pairs.push(List::new(device, "pairs of nodes", which, self.relations.capacity())?);
-        }
-        Ok(&self.node_pairs[level])
     }
 }
 
@@ -245,8 +206,8 @@ impl<R: Precision> CandidateSearch<R> for BodyGroups {
         let device = given.device;
         let args = self.relations_args(given, candidates.counters)?;
         launch::striding::<entry::traverse_relations>(device, self.body_pairs.capacity(), &args)?;
-        self.descend(given, &args, |args| striding::<entry::traverse_nodes>(device, args))?;
-        striding::<entry::traverse_instances>(device, &self.instances_args(&args, candidates))
+        self.descent.run(given, &args, |args| striding::<entry::traverse_nodes>(device, args))?;
+        striding::<entry::traverse_instances>(device, &self.descent.triangles(&args, candidates.pairs))
     }
 
     fn lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
@@ -254,7 +215,7 @@ impl<R: Precision> CandidateSearch<R> for BodyGroups {
     }
 
     fn placeable(&self) -> Option<Placeable> {
-        self.place(RelationWords::zeroed())
+        self.place(&self.descent, RelationWords::zeroed(), (Span::EMPTY, Span::EMPTY))
     }
 
     fn finish(&mut self, counters: &Counts) -> Result<(), Error> {

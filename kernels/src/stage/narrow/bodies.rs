@@ -2,20 +2,23 @@
 //! Paper    the thesis, section 6.2, the separation distance of two models; here for each pair of
 //!          bodies, with its triangles.
 //! Launch   pairs that share a point: `exact`, then `meeting`, a lane a relation.
-//!          Distances: `touch`, `exact`, `least`, `first`, `nearest`, a lane a candidate.
+//!          Distances: `exact`, `least`, `first`, `nearest`, a lane a candidate; `exact` and once
+//!          more `nearest` over candidates that were left by [`crate::stage::traverse::instances`] as
+//!          it looked for bodies that share a point.
 //!          A grid of any size strides.
 //! Reads    candidates, pairs of tiles, relations and their words; frames and meshes.
 //! Writes   words of relations; undecided candidates; pairs of bodies; the nearest triangles of
 //!          each.
-//! Before   candidates are those of [`crate::stage::traverse::instances`]. `pairs` of `exact` are
-//!          those that signs in f64 do not decide.
-//! After    touch, exact  touching(r) ≠ 0 ⇔ a candidate of r shares a point, or it was before.
+//! Before   candidates are those of [`crate::stage::traverse::instances`]. `pairs` of `exact` have
+//!          all that signs in f64 do not decide and that come before the known ones.
+//! After    exact  touching(r) ≠ 0 ⇔ a candidate of r shares a point, or it was before.
 //!          Without `any`, touching(r) is the complement of the key of the first of them.
 //!          meeting = {r : touching(r) ≠ 0}, as pairs of bodies.
 //!          least  bound(r) = the least computed distance D of the bodies of r, if none of their
 //!          triangles share a point and D ≤ the distance of the query.
 //!          first(r) = the complement of the key of the first candidate at D; 0 if there is none.
-//!          nearest = {(0, p, q) : key(p, q) of touching(r)} ∪ {(D, p, q) : key(p, q) of first(r)}.
+//!          nearest = {(0, p, q) : key(p, q) of touching(r)} of those that were left, and
+//!          {(D, p, q) : key(p, q) of first(r)} of the others.
 //!          A bound is at least D before (`crate::stage::traverse::instances::within`), and a pair
 //!          at D is a candidate. Its boxes' gap is at most D
 //!          ([`crate::prim::nearest`]), so it is measured whatever other lanes found before. So
@@ -25,11 +28,10 @@
 //! Cost     8 B a candidate, 500 B gathered. 600 operations for all signs, if boxes overlap. 4,000
 //!          for a distance, if the boxes are nearer than the best known; thousands for exact signs.
 
-use super::discrete::boxes_apart;
-use super::{Entries, append_each, stride};
+use super::{append_each, stride};
 use crate::abi::{BodiesNarrowArgs, NearestHit, Pair};
-use crate::bvh::placing::{MEET, PlacedTriangle, Signs, candidate, key};
-use crate::exec::{Block, Lane, OPEN};
+use crate::bvh::placing::{PlacedTriangle, candidate, key};
+use crate::exec::{Block, Lane};
 use crate::math::Real;
 use crate::prim::nearest::{BARELY, Corners, Nearest, apart, gap};
 use crate::prim::tri_tri::{Certain, meets};
@@ -83,35 +85,6 @@ fn each<B: Block>(block: &mut B, args: &BodiesNarrowArgs, mut body: impl FnMut(&
             }
             lane.meet();
         });
-    });
-}
-
-/// Signs of candidates whose boxes overlap: words, and what they do not decide.
-pub fn touch<B: Block>(block: &mut B, args: &BodiesNarrowArgs) {
-    let count = args.pairs.listed(block);
-    let mut entries = Entries::new(block);
-    stride(block, count, |block, base| {
-        block.map_rows(
-            &Signs,
-            |lane| {
-                let i = base + lane.lane();
-                if i >= count {
-                    return None;
-                }
-                let pair = args.pairs.get(lane, i);
-                let given = Given::of(lane, args, pair);
-                let [p, q] = given.corners(lane, args);
-                (!boxes_apart(&p, &q) && !given.is_known(lane, args)).then_some((pair, given))
-            },
-            |lane, (_, given)| Some(given.corners(lane, args)),
-            |lane, result| {
-                if let Some(((_, given), MEET)) = result {
-                    given.touches(lane, args);
-                }
-                entries.set(lane, result.and_then(|((pair, _), found)| (found == OPEN).then_some(pair)));
-            },
-        );
-        entries.append(block, args.uncertain);
     });
 }
 
@@ -169,9 +142,11 @@ pub fn first<B: Block>(block: &mut B, args: &BodiesNarrowArgs) {
 pub fn nearest<B: Block>(block: &mut B, args: &BodiesNarrowArgs) {
     each(block, args, |lane, given| {
         let touching = lane.read(args.words.touching, given.relation);
-        let first = lane.read(args.words.first, given.relation);
-        if (if touching != 0 { touching } else { first }) == given.key {
-            args.nearest.push(lane, hit(given.key, given.corners(lane, args), touching != 0));
+        let meets = args.of_touching != 0;
+        let is_of_these = meets == (touching != 0);
+        let wanted = if meets { touching } else { lane.read(args.words.first, given.relation) };
+        if is_of_these && wanted == given.key {
+            args.nearest.push(lane, hit(given.key, given.corners(lane, args), meets));
         }
     });
 }

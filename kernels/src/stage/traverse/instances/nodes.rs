@@ -16,7 +16,7 @@
 //! [`super::within`].
 
 use crate::abi::{MeshNode, NodePair, NodesArgs, NodesWithinArgs, Output, Relation, counter};
-use crate::bvh::gap::{CloseInBoth, limit};
+use crate::bvh::gap::CloseInBoth;
 use crate::bvh::pieces::Pieces;
 use crate::bvh::relation::Both;
 use crate::bvh::tiles::TILE;
@@ -29,7 +29,7 @@ pub const LANES: u32 = TILE;
 const FOUND: u32 = LANES * LANES;
 /// Shared memory of a block.
 pub const SHARED: u32 = shared_bytes::<Overlap>();
-/// That of [`nodes_within`], which also has a word for a bound.
+/// That of [`nodes_within`], which also has a word for the largest gap.
 pub const SHARED_WITHIN: u32 = shared_bytes::<Near>() + 16;
 
 const fn shared_bytes<T: Test>() -> u32 {
@@ -91,9 +91,9 @@ pub fn nodes<B: Block>(block: &mut B, args: &NodesArgs) {
 
 /// Pairs of nodes below pairs that may hold the nearest pair of triangles.
 pub fn nodes_within<B: Block>(block: &mut B, args: &NodesWithinArgs) {
-    let word = block.shared::<u64>(1);
+    let word = block.shared::<u32>(4);
     descend::<Near, B>(block, &args.of, |block, number, relation| {
-        limit(super::within::bound(block, &args.words, word, number), relation.slack)
+        super::within::reach(block, &args.words, word, (number, relation))
     });
 }
 

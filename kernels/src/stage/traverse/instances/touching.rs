@@ -1,26 +1,32 @@
-//! # Touching: pairs of tiles → pairs of bodies that share a point, and undecided candidates
+//! # Touching: pairs of tiles → pairs of bodies that share a point, and candidates left
 //! Paper    not in the paper.
-//! Launch   blocks of a warp, which stride over the pairs of tiles.
+//! Launch   blocks of a warp, which stride over runs of pairs of tiles.
 //! Reads    a relation and its word; otherwise as [`super::triangles`]; placed vertices.
-//! Writes   words of relations; candidates that signs in f64 do not decide.
+//! Writes   words of relations; candidates.
 //! Before   relations and pairs of tiles are listed. Words are 0, and so is the first pair.
 //! After    a word is not 0 ⇒ the bodies of its relation share a point.
 //!          Bodies that share a point, with a word that is 0, have a candidate that shares a point.
-//!          With `only_first` both hold of the first such bodies: a pair behind a known one is
-//!          skipped, the first never.
-//!          Which candidates are listed depends on the schedule.
+//!          [`TouchingArgs::FIRST`]: both hold of the first such bodies. A pair behind a known one
+//!          is skipped, the first never.
+//!          [`TouchingArgs::KEYS`]: a word is the key of two triangles that share a point, and those
+//!          are candidates. So is each pair before them that signs in f64 do not decide.
+//!          Which other candidates are listed depends on the schedule.
 //! Room     `pairs` may be too short: counters go on, the host grows it and runs again.
-//! Cost     an atomic load a pair of tiles. It ends there if its bodies are known to share a point.
+//! Cost     an atomic load a pair of tiles. It ends there if its bodies are known to share a point,
+//!          or with keys, if no pair of its triangles comes before a known one: the first triangle
+//!          of a tile has its least number.
 
 use super::triangles::{LANES, Take, triangles};
-use crate::abi::{Candidate, InstancesArgs, NodePair, TouchingArgs, counter};
+use crate::abi::{Candidate, InstanceTables, InstancesArgs, NodePair, TouchingArgs, counter};
 use crate::bvh::placing::{APART, MEET, Signs, key, triangles_of};
 use crate::exec::{Block, Lane, OPEN, Shared, Slot};
 
 /// Shared memory of a block: that of `triangles`, and a word.
 pub const SHARED: u32 = super::triangles::SHARED + 16;
+/// The key of all triangles if words are flags.
+const FLAG: u64 = 1;
 
-/// Decides triangles at once, until two share a point.
+/// Decides triangles at once: words only until two share a point.
 struct Decide<'a, B: Block> {
     args: &'a TouchingArgs,
     word: Shared<u32>,
@@ -29,15 +35,30 @@ struct Decide<'a, B: Block> {
     places: B::Slot<u32>,
 }
 
+/// The key of two triangles by their numbers in the meshes.
+#[inline(always)]
+fn key_of<L: Lane>(lane: &L, tables: &InstanceTables, bodies: [u32; 2], numbers: [u32; 2]) -> u64 {
+    let [p, q] = bodies.map(|body| lane.read(tables.bodies, body).triangle);
+    key(p + numbers[0], q + numbers[1])
+}
+
 impl<B: Block> Take<B> for Decide<'_, B> {
-    fn is_over(&mut self, block: &mut B, relation: u32, bodies: [u32; 2]) -> bool {
+    const RUN: u32 = 8;
+
+    fn is_over(&mut self, block: &mut B, bodies: [u32; 2], tiles: &NodePair) -> bool {
         let args = self.args;
         block.phase(|lane| {
             if lane.lane() == 0 {
-                let known = lane.fetch_load(args.words.touching, relation) != 0;
-                let behind = (args.only_first != 0)
+                let known = lane.fetch_load(args.words.touching, tiles.relation);
+                let is_over = if args.has(TouchingArgs::KEYS) && known != 0 {
+                    let least = [tiles.a, tiles.b].map(|tile| lane.read(args.of.tables.nodes, tile).first);
+                    known > key_of(lane, &args.of.tables, bodies, least)
+                } else {
+                    known != 0
+                };
+                let behind = args.has(TouchingArgs::FIRST)
                     && args.of.counters.look(lane, counter::FIRST_BODIES) > key(bodies[0], bodies[1]);
-                lane.put(self.word, 0, (known | behind) as u32);
+                lane.put(self.word, 0, (is_over | behind) as u32);
             }
             lane.meet();
         });
@@ -52,30 +73,43 @@ impl<B: Block> Take<B> for Decide<'_, B> {
         found: Shared<u32>,
         fits: u32,
     ) {
-        let (tables, first, words) = (&args.tables, self.args.only_first != 0, self.args.words);
+        let (tables, words, has_keys) = (&args.tables, self.args.words, self.args.has(TouchingArgs::KEYS));
         let mut at = 0;
         while at < fits {
             block.map_rows(
                 &Signs,
-                |lane| (at + lane.lane() < fits).then(|| lane.get(found, at + lane.lane())),
-                |lane, word| {
+                |lane| {
+                    let word = (at + lane.lane() < fits).then(|| lane.get(found, at + lane.lane()))?;
+                    if !has_keys {
+                        return Some((word, FLAG));
+                    }
+                    let triangles = triangles_of(bodies, &tiles, Candidate::of_word(word));
+                    let numbers = triangles.map(|triangle| lane.read(tables.leaves, triangle.place).number);
+                    let own = key_of(lane, tables, bodies, numbers);
+                    (lane.fetch_load(words.touching, tiles.relation) <= own).then_some((word, own))
+                },
+                |lane, (word, _)| {
                     let [p, q] = triangles_of(bodies, &tiles, Candidate::of_word(word));
                     Some([p.corners(lane, tables), q.corners(lane, tables)])
                 },
                 |lane, result| {
-                    let verdict = result.map_or(APART, |(_, verdict)| verdict);
-                    *self.meets.of(lane) = verdict == MEET;
-                    let left = result.and_then(|(word, _)| (verdict == OPEN).then_some(word));
-                    *self.places.of(lane) = left.is_some() as u32;
-                    *self.left.of(lane) = left;
+                    let ((word, own), verdict) = result.unwrap_or(((0, 0), APART));
+                    let meets = verdict == MEET;
+                    if has_keys & meets {
+                        lane.fetch_max(words.touching, tiles.relation, own);
+                    }
+                    let is_left = (verdict == OPEN) | (has_keys & meets);
+                    *self.meets.of(lane) = !has_keys & meets;
+                    *self.places.of(lane) = is_left as u32;
+                    *self.left.of(lane) = is_left.then_some(word);
                     lane.meet();
                 },
             );
             if block.any(&mut self.meets) {
                 block.phase(|lane| {
                     if lane.lane() == 0 {
-                        lane.fetch_max(words.touching, tiles.relation, 1);
-                        if first {
+                        lane.fetch_max(words.touching, tiles.relation, FLAG);
+                        if self.args.has(TouchingArgs::FIRST) {
                             args.counters.raise(lane, counter::FIRST_BODIES, key(bodies[0], bodies[1]));
                         }
                     }
@@ -96,7 +130,7 @@ impl<B: Block> Take<B> for Decide<'_, B> {
     }
 }
 
-/// Bodies that share a point, and candidates that signs do not decide.
+/// Bodies that share a point, and candidates that are left.
 pub fn touching<B: Block>(block: &mut B, args: &TouchingArgs) {
     let word = block.shared::<u32>(4);
     let mut decide =

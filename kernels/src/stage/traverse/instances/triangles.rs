@@ -70,8 +70,11 @@ struct Two {
 
 /// The end of a pair of tiles.
 pub trait Take<B: Block> {
-    /// Whether pairs of tiles of a relation, and of its bodies, need no test.
-    fn is_over(&mut self, block: &mut B, relation: u32, bodies: [u32; 2]) -> bool;
+    /// How many pairs of tiles a block takes behind one another. Most are of one relation: what is
+    /// known from the first may end the others.
+    const RUN: u32;
+    /// Whether a pair of tiles of these bodies needs no test.
+    fn is_over(&mut self, block: &mut B, bodies: [u32; 2], tiles: &NodePair) -> bool;
     /// Takes `fits` pairs of triangles that may meet, as words of [`Candidate`]. Given are the number
     /// of the pair of tiles, the bodies, and the pair.
     fn take(
@@ -88,8 +91,9 @@ pub trait Take<B: Block> {
 struct ListAll;
 
 impl<B: Block> Take<B> for ListAll {
+    const RUN: u32 = 1;
     #[inline(always)]
-    fn is_over(&mut self, _: &mut B, _: u32, _: [u32; 2]) -> bool {
+    fn is_over(&mut self, _: &mut B, _: [u32; 2], _: &NodePair) -> bool {
         false
     }
     #[inline(always)]
@@ -121,7 +125,7 @@ pub fn candidates<B: Block>(block: &mut B, args: &InstancesArgs) {
 
 /// Pairs of triangles of pairs of tiles, taken by `to`.
 #[inline(always)]
-pub fn triangles<B: Block>(block: &mut B, args: &InstancesArgs, to: &mut impl Take<B>) {
+pub fn triangles<B: Block, T: Take<B>>(block: &mut B, args: &InstancesArgs, to: &mut T) {
     let rows = Pieces::<FrameBox>::new(block, LANES);
     let corners = [Pieces::<Corners>::new(block, LANES), Pieces::<Corners>::new(block, LANES)];
     let names = block.shared::<u32>(LANES);
@@ -131,12 +135,16 @@ pub fn triangles<B: Block>(block: &mut B, args: &InstancesArgs, to: &mut impl Ta
     let mut seconds = block.slot(0u32);
     let mut kept = block.slot(None);
     let (count, tables) = (args.tile_pairs.listed(block), &args.tables);
-    let (mut unit, mut tests) = (block.block(), 0u64);
-    while unit < count {
+    let (mut next, mut tests) = (block.block() * T::RUN, 0u64);
+    while next < count {
+        let unit = next;
+        next += 1;
+        if next % T::RUN == 0 {
+            next += (block.blocks() - 1) * T::RUN;
+        }
         let pair = block.load(args.tile_pairs.items(), unit);
         let relation = block.load(args.relations.items(), pair.relation);
-        if to.is_over(block, pair.relation, relation.bodies) {
-            unit += block.blocks();
+        if to.is_over(block, relation.bodies, &pair) {
             continue;
         }
         let [tile_a, tile_b] = [pair.a, pair.b].map(|tile| block.load(tables.nodes, tile).volume);
@@ -166,8 +174,6 @@ pub fn triangles<B: Block>(block: &mut B, args: &InstancesArgs, to: &mut impl Ta
         let is_turned = of_b < of_a;
         let height = if is_turned { of_b } else { of_a };
         tests += (2 * LANES + LANES * height) as u64;
-        let tile_pair = unit;
-        unit += block.blocks();
         if height == 0 {
             continue;
         }
@@ -226,7 +232,7 @@ pub fn triangles<B: Block>(block: &mut B, args: &InstancesArgs, to: &mut impl Ta
             fits += some;
             at += LANES;
         }
-        to.take(block, args, (tile_pair, relation.bodies, pair), found, fits);
+        to.take(block, args, (unit, relation.bodies, pair), found, fits);
     }
     args.counters.add_once(block, counter::STEPS, tests);
 }

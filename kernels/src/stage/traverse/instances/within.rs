@@ -7,12 +7,12 @@
 //! Reads    a relation and its bound; two nodes; 32 triangles of each tile.
 //! Writes   bounds; candidates, a pair of tiles and two places, each once, in no order.
 //! Before   relations and pairs are listed. A bound is none, or at least the least distance of its
-//!          two bodies, as computed.
+//!          two bodies, as computed. Bodies that are known to share a point have a word that is not 0
+//!          ([`super::touching`]), and nothing is read or written for them.
 //! After    the same of bounds. They are at most the largest distance of volumes of a pair, and
 //!          the least distance of first corners of a pair of tiles.
 //!          pairs ⊇ {(p, q) : p in tile a, q in tile b, computed distance = the least of the bodies
-//!          ≤ the distance of the query}
-//!          ∪ {(p, q) : placed triangles share a point}.
+//!          ≤ the distance of the query}, of bodies that are not known to share a point.
 //!          Bounds change while they are read, so other candidates depend on the schedule. A pair
 //!          above is within every bound: see [`crate::bvh::gap`].
 //! Room     `pairs` may be too short: counters go on, the host grows it and runs again.
@@ -35,21 +35,31 @@ pub const LANES: u32 = TILE;
 const FOUND: u32 = LANES * LANES;
 /// A point, in shared memory.
 type Point = [f32; 3];
-/// Shared memory of `corners`: a bound, the least square, and points.
-pub const SHARED_CORNERS: u32 = 16 + Pieces::<Point>::bytes(LANES);
-/// Shared memory of `candidates`: a bound, rows with their names, and what was found.
+/// Shared memory of `corners`: the largest gap, the least square, and points.
+pub const SHARED_CORNERS: u32 = 32 + Pieces::<Point>::bytes(LANES);
+/// Shared memory of `candidates`: the largest gap, rows with their names, and what was found.
 pub const SHARED: u32 = 16 + Pieces::<Close>::bytes(LANES) + 4 * LANES + 4 * FOUND;
 
-/// The bound of a relation, the same for all lanes of the block.
+/// No gap is within it.
+const NOTHING: f32 = -1.0;
+
+/// The square of the largest gap of a relation's volumes, the same for all lanes of the block.
 #[inline(always)]
-pub fn bound<B: Block>(block: &mut B, words: &RelationWords, word: Shared<u64>, relation: u32) -> f64 {
+pub fn reach<B: Block>(
+    block: &mut B,
+    words: &RelationWords,
+    word: Shared<u32>,
+    (number, relation): (u32, &Relation),
+) -> f32 {
     block.phase(|lane| {
         if lane.lane() == 0 {
-            lane.put(word, 0, lane.fetch_load(words.least, relation));
+            let is_known = lane.read(words.touching, number) != 0;
+            let reach = limit(words.bound(lane, number), relation.slack);
+            lane.put(word, 0, (if is_known { NOTHING } else { reach }).to_bits());
         }
         lane.meet();
     });
-    words.bound_of(block.peek(word, 0))
+    f32::from_bits(block.peek(word, 0))
 }
 
 /// Lowers bounds by the largest distances of volumes.
@@ -62,9 +72,9 @@ pub fn bounds<B: Block>(block: &mut B, args: &NodesWithinArgs) {
     while base < count {
         block.phase(|lane| {
             let i = base + lane.lane();
-            if i < count {
-                let pair = if is_root { NodePair::zeroed() } else { of.pairs.get(lane, i) };
-                let number = if is_root { i } else { pair.relation };
+            let pair = if is_root | (i >= count) { NodePair::zeroed() } else { of.pairs.get(lane, i) };
+            let number = if is_root { i } else { pair.relation };
+            if i < count && lane.read(args.words.touching, number) == 0 {
                 let relation = of.relations.get(lane, number);
                 let root =
                     |body: u32| lane.read(of.tables.meshes, lane.read(of.tables.bodies, body).mesh).root;
@@ -88,10 +98,10 @@ struct Tiles {
 
 /// The pair of a number.
 #[inline(always)]
-fn tiles<B: Block>(block: &mut B, args: &InstancesWithinArgs, word: Shared<u64>, unit: u32) -> Tiles {
+fn tiles<B: Block>(block: &mut B, args: &InstancesWithinArgs, word: Shared<u32>, unit: u32) -> Tiles {
     let pair = block.load(args.of.tile_pairs.items(), unit);
     let relation = block.load(args.of.relations.items(), pair.relation);
-    let limit = limit(bound(block, &args.words, word, pair.relation), relation.slack);
+    let limit = reach(block, &args.words, word, (pair.relation, &relation));
     let nodes = [pair.a, pair.b].map(|tile| block.load(args.of.tables.nodes, tile));
     Tiles { pair, relation, nodes, limit }
 }
@@ -107,13 +117,13 @@ impl Tiles {
 
 /// Lowers bounds by distances of first corners of triangles.
 pub fn corners<B: Block>(block: &mut B, args: &InstancesWithinArgs) {
-    let words = block.shared::<u64>(2);
+    let (word, closest) = (block.shared::<u32>(4), block.shared::<u64>(2));
     let points = Pieces::<Point>::new(block, LANES);
     let (count, tables) = (args.of.tile_pairs.listed(block), &args.of.tables);
     let mut own = block.slot([0f32; 3]);
     let mut unit = block.block();
     while unit < count {
-        let at = tiles(block, args, words, unit);
+        let at = tiles(block, args, word, unit);
         unit += block.blocks();
         let [a, b] = at.volumes();
         if !a.reaches(&b) {
@@ -129,26 +139,26 @@ pub fn corners<B: Block>(block: &mut B, args: &InstancesWithinArgs) {
             *own.of(lane) = corner(at.pair.a);
             points.put(lane, lane.lane(), at.relation.to_first(corner(at.pair.b)));
             if lane.lane() == 0 {
-                lane.put(words, 1, u64::MAX);
+                lane.put(closest, 0, u64::MAX);
             }
             lane.meet();
         });
         block.phase(|lane| {
-            let p = own.of(lane).map(|x| x.wide());
-            let (mut least, mut k) = (f64::INFINITY, 0);
+            let p = *own.of(lane);
+            let (mut least, mut k) = (f32::INFINITY, 0);
             while k < LANES {
-                let q = points.get(lane, k).map(|x| x.wide());
+                let q = points.get(lane, k);
                 let d = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
                 least = least.lesser(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
                 k += 1;
             }
             // Squares are at least 0: their bits are ordered as they are.
-            lane.shared_min(words, 1, least.to_bits());
+            lane.shared_min(closest, 0, least.wide().to_bits());
             lane.meet();
         });
         block.phase(|lane| {
             if lane.lane() == 0 {
-                let squared = f64::from_bits(lane.get(words, 1));
+                let squared = f64::from_bits(lane.get(closest, 0));
                 args.words.lower(lane, at.pair.relation, apart(&at.relation, squared));
             }
             lane.meet();
@@ -169,7 +179,7 @@ impl PairTest for Near {
 
 /// Candidates of pairs of tiles, by the gaps of boxes in the frame of the first body.
 pub fn candidates<B: Block>(block: &mut B, args: &InstancesWithinArgs) {
-    let word = block.shared::<u64>(1);
+    let word = block.shared::<u32>(4);
     let rows = Pieces::<Close>::new(block, LANES);
     let names = block.shared::<u32>(LANES);
     let found = block.shared::<u32>(FOUND);
