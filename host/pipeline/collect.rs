@@ -45,8 +45,8 @@ pub fn collect(
     let caveats = caveats(&found);
     let stats = Stats {
         stages,
-        triangle_pairs: count(counter::PAIRS),
-        candidates: if of_triangles { count(counter::PAIRS) } else { vf_ee[0] + vf_ee[1] },
+        triangle_pairs: found.pairs,
+        candidates: if of_triangles { found.pairs } else { vf_ee[0] + vf_ee[1] },
         candidates_vf_ee: vf_ee,
         turning_vf_ee: turning,
         survivors_vf_ee: [count(counter::VF_SURVIVORS), count(counter::EE_SURVIVORS)],
@@ -80,9 +80,14 @@ fn rows(found: Found, layout: &Layout, looks: &Looks) -> Rows {
             Rows::BodyPairs(pairs.into())
         }
         Listed::BodyDistances(nearest) => {
-            let mut all: Vec<_> = nearest.iter().map(|hit| nearest_triangles(hit, layout)).collect();
-            sort::sort(&mut all, |nearest| nearest.bodies, looks);
-            Rows::BodyDistances(all.into())
+            // Rows are long: what is sorted are their keys.
+            let bodies = |triangle: u32| layout.locate(triangle, |at| at.triangle).0;
+            let keys = nearest.iter().enumerate().map(|(i, hit)| ([hit.a, hit.b].map(bodies), i as u32));
+            let mut keys: Vec<_> = keys.collect();
+            sort::sort(&mut keys, |(bodies, _)| *bodies, looks);
+            let mut rows = Vec::with_capacity(keys.len());
+            sort::extend(&mut rows, &keys, |&(_, i)| nearest_triangles(&nearest[i as usize], layout), looks);
+            Rows::BodyDistances(rows.into())
         }
         Listed::Pairs(hits) => {
             let pair = |p: &Pair, _| {

@@ -273,7 +273,7 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
             // Candidates name pairs of tiles by their places, which depend on the schedule.
             return Ok(prints);
         }
-        let mut lists = vec![named("traverse", &self.scene.pairs)];
+        let mut lists = vec![named("traverse", self.scene.candidates(false))];
         lists.extend(own.narrow.between(&self.scene.features));
         for (name, list) in lists {
             prints.push((name, list.fingerprint(&own.last)?));

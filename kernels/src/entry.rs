@@ -49,7 +49,7 @@ use crate::stage::traverse::instances::{
     nodes, relations, touching, triangles as instance_triangles, within,
 };
 use crate::stage::traverse::{
-    front, nearest as nearest_first, per_leaf, queue, steal, tile_triangles, tiles as tile_pairs,
+    front, left_out, nearest as nearest_first, per_leaf, queue, steal, tile_triangles, tiles as tile_pairs,
 };
 use crate::stage::{balance, order, place, starts, status, turns};
 use bytemuck::NoUninit;
@@ -131,6 +131,7 @@ kernels! {
     construct_tile_filters: tile_filters::filters, [TileFiltersArgs], WIDE, 0;
     construct_treelets: treelet::plan, [PlanArgs], WIDE, treelet::SHARED;
     fit_bodies: fit_of_bodies::bodies, [BodiesArgs], fit_of_tiles::LANES, fit_of_tiles::shared_bytes::<bv::FrameBox>(), exact = true;
+    traverse_left_out: left_out::left_out, [LeftOutArgs], WIDE, 0;
     traverse_relations: relations::relations, [RelationsArgs], NARROW, 0;
     traverse_nodes: nodes::nodes, [NodesArgs], nodes::LANES, nodes::SHARED, exact = true;
     traverse_instances: instance_triangles::candidates, [InstancesArgs], instance_triangles::LANES, instance_triangles::SHARED, exact = true;

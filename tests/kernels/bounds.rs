@@ -10,6 +10,7 @@ mod apart;
 mod boxes;
 mod cubic;
 mod exact;
+mod farther;
 mod hunt;
 mod inclusion;
 mod isolate;

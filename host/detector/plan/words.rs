@@ -17,7 +17,7 @@ pub const STAGES: [(&str, &str); 9] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 86] = [
+const KERNELS: [(&str, &str); 87] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
     ("place_turns", "rotation vectors and paths of bodies that turn"),
     ("place", "poses applied, uploads put in place, other bodies at rest"),
@@ -48,6 +48,7 @@ const KERNELS: [(&str, &str); 86] = [
     ("traverse_nodes_within", "pairs of nodes of two meshes within the bound, a level lower"),
     ("traverse_instances_within", "triangles of pairs of tiles within the bound, by boxes"),
     ("traverse_bounds", "bounds of distances, from boxes"),
+    ("traverse_left_out", "candidates of bodies that are not left out"),
     ("traverse_corners", "bounds of distances, from corners"),
     ("traverse_touching", "bodies that share a point, by the triangles of pairs of tiles"),
     ("traverse_relations", "bodies in the frames of others, if their meshes may meet"),

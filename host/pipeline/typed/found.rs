@@ -54,6 +54,8 @@ pub struct Found<'a> {
     pub listed: Listed<'a>,
     /// The frame's counters.
     pub counters: Counts,
+    /// Candidate triangle pairs of bodies that are not left out.
+    pub pairs: u64,
     /// How often a list was too short and part of the frame reran.
     pub reruns: u64,
     /// Whether the walk's front did not pay.
@@ -136,6 +138,7 @@ impl<R: Precision> QueryMemory<R> {
         let listed = self.narrow.gather(&counters)?;
         let (front_dropped, seen) = (scene.broads[self.broad].phase.front_dropped(), scene.vertices.seen()?);
         let is_start_checked = self.narrow.checks_start();
-        Ok(Found { listed, counters, reruns, front_dropped, is_start_checked, seen })
+        let pairs = scene.candidates(self.is_of_instances).demand(&counters);
+        Ok(Found { listed, counters, pairs, reruns, front_dropped, is_start_checked, seen })
     }
 }

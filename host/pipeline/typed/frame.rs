@@ -5,10 +5,9 @@ use super::query::QueryMemory;
 use super::scene::SceneMemory;
 use crate::device::{Device, Marks, Replay};
 use crate::error::Error;
-use crate::pipeline::broad::{Candidates, Which};
+use crate::pipeline::broad::Which;
 use crate::pipeline::precision::Precision;
 use crate::stages::{Stage, Stages};
-use nearmiss_kernels::abi::TraverseFlags;
 use std::time::Instant;
 
 /// The time marks of a frame.
@@ -96,15 +95,7 @@ impl<R: Precision> QueryMemory<R> {
     /// # Errors
     /// Device errors.
     pub(super) fn traverse(&mut self, scene: &mut SceneMemory<R>, which: Which) -> Result<(), Error> {
-        let counters = self.counters.counters();
-        let candidates = Candidates {
-            pairs: scene.pairs.output(counters),
-            counters,
-            flags: TraverseFlags::KEEP_ADJACENT.when(self.query.keeps_adjacent()),
-            which,
-            share: self.share,
-        };
-        scene.broadly(self, |broad, given, _| broad.traverse(given, &candidates))
+        scene.traverse(self, (which, self.counters.counters()))
     }
 
     fn stages(&mut self, scene: &mut SceneMemory<R>, fits: bool, marks: &mut Marks) -> Result<(), Error> {

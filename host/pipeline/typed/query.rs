@@ -79,7 +79,7 @@ impl<R: Precision> QueryMemory<R> {
         } else {
             (LEAST_ROOM.max(a_triangle * triangles), LEAST_ROOM.max(4 * triangles))
         };
-        scene.pairs.reserve(&device, capacity)?;
+        scene.reserve_pairs(capacity)?;
         if query.kind().is_of_features() {
             scene.features.reserve(&device, layout, [capacity, 2 * capacity])?;
         }
@@ -231,7 +231,7 @@ impl<R: Precision> QueryMemory<R> {
                         frames: scene.vertices.frames(self.query.kind().is_at_rest()),
                         rest: scene.vertices.rest(),
                         faces: scene.faces.span(),
-                        pairs: scene.pairs.output(self.counters.counters()),
+                        pairs: scene.candidates(self.is_of_instances).output(self.counters.counters()),
                         bodies: self.records.span(),
                         counters: self.counters.counters(),
                         features: &scene.features,
@@ -259,11 +259,7 @@ impl<R: Precision> QueryMemory<R> {
         self.refuse(scene, step, &counters)?;
         let device = scene.device.of(purpose::WALK);
         let lists = match step {
-            Step::Sample | Step::Traverse => {
-                let mut lists = scene.broads[self.broad].phase.lists();
-                lists.push(&mut scene.pairs);
-                lists
-            }
+            Step::Sample | Step::Traverse => scene.lists_of_traversal(self.broad),
             Step::Narrow(at, _) => self.narrow.lists(at, &mut scene.features),
             Step::Order => self.narrow.ordered(),
         };

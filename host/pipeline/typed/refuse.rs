@@ -8,18 +8,15 @@ use crate::pipeline::counts::Counts;
 use crate::pipeline::list::GrowableOutput;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::purpose;
-use nearmiss_kernels::abi::counter;
 
 impl<R: Precision> QueryMemory<R> {
     /// Returns whether a list of any step had too little room.
     pub(super) fn has_overflowed(&mut self, scene: &mut SceneMemory<R>, counters: &Counts) -> bool {
         let mut steps = self.narrow_steps_at();
-        let features = &mut scene.features;
-        scene.pairs.has_overflowed(counters)
-            || scene.broads[self.broad].phase.lists().iter().any(|list| list.has_overflowed(counters))
-            || steps
-                .any(|at| self.narrow.lists(at, features).iter().any(|list| list.has_overflowed(counters)))
-            || self.narrow.ordered().iter().any(|list| list.has_overflowed(counters))
+        let is_short = |list: &&mut dyn GrowableOutput| list.has_overflowed(counters);
+        scene.lists_of_traversal(self.broad).iter().any(is_short)
+            || steps.any(|at| self.narrow.lists(at, &mut scene.features).iter().any(is_short))
+            || self.narrow.ordered().iter().any(is_short)
     }
 
     /// Grows every list that a submission found too short, by the demand of its schedule. The next
@@ -39,8 +36,7 @@ impl<R: Precision> QueryMemory<R> {
                 grown = own;
             }
         };
-        scene.broads[self.broad].phase.lists().into_iter().for_each(&mut grow);
-        grow(&mut scene.pairs);
+        scene.lists_of_traversal(self.broad).into_iter().for_each(&mut grow);
         for at in self.narrow_steps_at() {
             self.narrow.lists(at, &mut scene.features).into_iter().for_each(&mut grow);
         }
@@ -63,7 +59,8 @@ impl<R: Precision> QueryMemory<R> {
                     };
                     Ok(at.iter().map(wide).collect())
                 };
-                self.demand.foreseen(counters[counter::PAIRS], (&self.layout, &scene.device), positions)
+                let pairs = scene.candidates(self.is_of_instances).demand(counters);
+                self.demand.foreseen(pairs, (&self.layout, &scene.device), positions)
             }
             Step::Narrow(_, false) => self.demand.counted(counters, &scene.device),
             Step::Sample | Step::Narrow(_, true) | Step::Order => Ok(()),

@@ -6,10 +6,11 @@ use super::query::QueryMemory;
 use crate::device::{Buffer, Device, Event};
 use crate::error::Error;
 use crate::pipeline::broad::{
-    BroadContext, CandidateSearch, broad_phase, growth, instance_phase, pair_phase,
+    BroadContext, CandidateSearch, Candidates, Which, broad_phase, growth, instance_phase, pair_phase,
 };
 use crate::pipeline::instances::Instances;
-use crate::pipeline::list::List;
+use crate::pipeline::launch;
+use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::narrow::Features;
 use crate::pipeline::placing::{Moved, Placing};
 use crate::pipeline::precision::Precision;
@@ -17,7 +18,10 @@ use crate::pipeline::purpose;
 use crate::pipeline::{Layout, QueryParts, SceneParts};
 use crate::query::{self, BoundingVolume, Query, QueryKind};
 use crate::scene::Body;
-use nearmiss_kernels::abi::{BodyRecord, FilterArgs, Pair, counter};
+use nearmiss_kernels::abi::{
+    BodyRecord, Counters, FilterArgs, LeftOutArgs, Pair, TraverseFlags, counter,
+};
+use nearmiss_kernels::entry::traverse_left_out;
 
 /// The choices that two queries must have in common to share a broad phase.
 #[derive(Clone, Copy, PartialEq)]
@@ -66,6 +70,8 @@ pub struct SceneMemory<R: Precision> {
     pub features: Features,
     /// Candidate triangle pairs of the current query.
     pub pairs: List<Pair>,
+    /// Those of bodies that are not left out; `None` without such. Instances never list others.
+    allowed: Option<List<Pair>>,
     pub broads: Vec<Broad<R>>,
     /// Whether a submission is being enqueued.
     pub is_submitting: bool,
@@ -92,12 +98,69 @@ impl<R: Precision> SceneMemory<R> {
             instances: None,
             features: Features::none(&device)?,
             pairs: List::new(&device, "candidate triangle pairs", counter::PAIRS, 0)?,
+            allowed: if parts.layout.left_out.is_empty() {
+                None
+            } else {
+                Some(List::new(&device, "allowed triangle pairs", counter::ALLOWED_PAIRS, 0)?)
+            },
             broads: Vec::new(),
             is_submitting: false,
             placing: Vec::new(),
             placings: 0,
             device,
         })
+    }
+
+    /// Makes room for so many candidates.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub fn reserve_pairs(&mut self, capacity: usize) -> Result<(), Error> {
+        let device = self.device.clone();
+        self.lists_of_pairs().try_for_each(|list| list.reserve(&device, capacity))
+    }
+
+    /// Returns the lists of candidates; the narrow phase of vertices reads the last.
+    pub fn lists_of_pairs(&mut self) -> impl Iterator<Item = &mut List<Pair>> {
+        [&mut self.pairs].into_iter().chain(&mut self.allowed)
+    }
+
+    /// Returns all lists of a traversal by a broad phase.
+    pub fn lists_of_traversal(&mut self, broad: usize) -> Vec<&mut dyn GrowableOutput> {
+        let mut lists = self.broads[broad].phase.lists();
+        lists.push(&mut self.pairs);
+        lists.extend(self.allowed.iter_mut().map(|list| list as &mut dyn GrowableOutput));
+        lists
+    }
+
+    /// Returns the candidates that the narrow phase reads.
+    pub fn candidates(&self, is_of_instances: bool) -> &List<Pair> {
+        self.allowed.as_ref().filter(|_| !is_of_instances).unwrap_or(&self.pairs)
+    }
+
+    /// Lists a query's candidates.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn traverse(
+        &mut self,
+        query: &QueryMemory<R>,
+        (which, counters): (Which, Counters),
+    ) -> Result<(), Error> {
+        let pairs = self.pairs.output(counters);
+        let flags = TraverseFlags::KEEP_ADJACENT.when(query.query.keeps_adjacent());
+        let candidates = Candidates { pairs, counters, flags, which, share: query.share };
+        self.broadly(query, |broad, given, _| broad.traverse(given, &candidates))?;
+        let Some(allowed) = self.allowed.as_ref().filter(|_| !query.is_of_instances) else {
+            return Ok(());
+        };
+        let args = LeftOutArgs {
+            pairs,
+            allowed: allowed.output(counters),
+            bodies: query.records(),
+            left_out: self.left_out.span(),
+        };
+        launch::striding::<traverse_left_out>(&self.device, self.pairs.capacity(), &args)
     }
 
     /// Returns the index of a query's broad phase, made if there is none like it. It is not built

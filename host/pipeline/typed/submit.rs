@@ -231,8 +231,7 @@ impl<R: Precision> QueryMemory<R> {
     pub(super) fn rooms(&mut self, scene: &mut SceneMemory<R>) -> Vec<Room> {
         let room =
             |list: &&mut dyn GrowableOutput| Room { entries: list.room(), counter: list.counter(), pad: 0 };
-        let mut rooms: Vec<Room> = scene.broads[self.broad].phase.lists().iter().map(room).collect();
-        rooms.push(room(&(&mut scene.pairs as &mut dyn GrowableOutput)));
+        let mut rooms: Vec<Room> = scene.lists_of_traversal(self.broad).iter().map(room).collect();
         for step in self.narrow_steps_at() {
             rooms.extend(self.narrow.lists(step, &mut scene.features).iter().map(room));
         }

@@ -146,6 +146,8 @@ counters! { 0;
     NEAREST_PAIRS,
     /// Triangle pairs of a step that share a point at t = 0.
     STARTS_CROSSING,
+    /// Candidate triangle pairs of bodies that are not left out, in a scene that leaves out some.
+    ALLOWED_PAIRS,
     /// Candidate triangle pairs of bodies of which none turns, in a step in which some may.
     STRAIGHT_PAIRS,
     /// Candidate triangle pairs of bodies of which one turns.

@@ -173,6 +173,8 @@ arguments! {
         pairs: Output<Pair>,
         /// Out: those whose meshes may meet.
         relations: Output<Relation>,
+        /// Pairs of bodies that are left out, see [`FilterArgs::left_out`](super::FilterArgs).
+        left_out: Span<u32>,
         /// Counters.
         counters: Counters,
     }

@@ -1,6 +1,6 @@
 //! Scenes of many bodies: the record of each, and the source of its vertices.
 
-use super::{Link, Node, Point, Positions, Span, VertexMotion};
+use super::{Link, Node, Output, Pair, Point, Positions, Span, VertexMotion};
 use crate::math::Real;
 use bytemuck::{Pod, Zeroable};
 
@@ -168,6 +168,17 @@ arguments! {
         bodies: Span<BodyRecord>,
         /// The pairs of bodies that are left out; empty without such. Word `b` is the place of the
         /// first of the larger numbers in pairs of body `b`, ascending, up to word `b + 1`.
+        left_out: Span<u32>,
+    }
+    /// `traverse_left_out`: candidates to those of bodies that are not left out.
+    LeftOutArgs {
+        /// Candidates.
+        pairs: Output<Pair>,
+        /// Out: those that are allowed.
+        allowed: Output<Pair>,
+        /// The bodies.
+        bodies: Span<BodyRecord>,
+        /// The list, see [`FilterArgs::left_out`].
         left_out: Span<u32>,
     }
     /// `place`: positions of the vertices of moved bodies.

@@ -26,8 +26,8 @@ impl FilterArgs {
 
     /// Whether triangles below one node may meet triangles below the other. Two bodies must share
     /// an environment, or one is in every environment. Each must be in a group that the other
-    /// meets, and the list of pairs that are left out must not have them. A body meets itself by
-    /// its own flag, for any groups. A refusal for two nodes holds for all below them: environments
+    /// meets. A body meets itself by its own flag, for any groups. Pairs of bodies that are left out
+    /// are not looked up: see [`FilterArgs::leaves_out`]. A refusal for two nodes holds for all below them: environments
     /// are ranges of leaves, and a hub of a node is one of all below it.
     #[inline(always)]
     pub fn allows<L: Lane>(&self, lane: &L, p: NodeFilter, q: NodeFilter) -> bool {
@@ -44,18 +44,23 @@ impl FilterArgs {
         }
         let shared = (p.first() <= q.last) & (q.first() <= p.last);
         let together = shared | (p.last == EVERY) | (q.last == EVERY);
-        if !together | mixed | (self.bodies.is_empty() & self.left_out.is_empty()) {
+        if !together | mixed | self.bodies.is_empty() {
             return together;
         }
-        let [p, q] = [p, q].map(|filter| filter.who & NodeFilter::NUMBER);
-        if !self.left_out.is_empty() && listed(lane, self.left_out, p, q) {
-            return false;
-        }
-        if self.bodies.is_empty() {
-            return true;
-        }
-        let [p, q] = [p, q].map(|body| lane.read(self.bodies, body));
+        let [p, q] = [p, q].map(|filter| lane.read(self.bodies, filter.who & NodeFilter::NUMBER));
         (p.group & q.mask != 0) & (q.group & p.mask != 0)
+    }
+}
+
+impl FilterArgs {
+    /// Whether two nodes are of one body each, and these are a pair that is left out. Walks that do
+    /// not look it up list candidates of such a pair, and [`crate::stage::traverse::left_out`] drops
+    /// them.
+    #[inline(always)]
+    pub fn leaves_out<L: Lane>(&self, lane: &L, p: NodeFilter, q: NodeFilter) -> bool {
+        !self.left_out.is_empty()
+            && (p.who | q.who) & MIXED == 0
+            && listed(lane, self.left_out, [p, q].map(|filter| filter.who & NodeFilter::NUMBER))
     }
 }
 
@@ -96,13 +101,13 @@ impl NodeFilter {
 /// [`is_left_out`] of a list on the device. Out of line, so that scenes without a list have no more
 /// instructions in their loops.
 #[inline(never)]
-fn listed<L: Lane>(lane: &L, list: Span<u32>, p: u32, q: u32) -> bool {
+fn listed<L: Lane>(lane: &L, list: Span<u32>, [p, q]: [u32; 2]) -> bool {
     is_left_out(p, q, |i| lane.read(list, i))
 }
 
-/// Whether the list of pairs that are left out has two different bodies: see
-/// [`FilterArgs::left_out`]. `word` returns a word of the list. Cost: a binary search in the pairs
-/// of the smaller number.
+/// Whether the list of pairs that are left out has two bodies: see [`FilterArgs::left_out`]. No body
+/// is left out with itself. `word` returns a word of the list. Cost: a binary search in the pairs of
+/// the smaller number.
 #[inline(always)]
 pub fn is_left_out(p: u32, q: u32, word: impl Fn(u32) -> u32) -> bool {
     let (body, other) = if p < q { (p, q) } else { (q, p) };

@@ -80,3 +80,9 @@ pub fn candidate<L: Lane>(
 pub fn key(first: u32, second: u32) -> u64 {
     !((first as u64) << 32 | second as u64)
 }
+
+/// The first of the two numbers of a key.
+#[inline(always)]
+pub fn first_of(key: u64) -> u32 {
+    (!key >> 32) as u32
+}

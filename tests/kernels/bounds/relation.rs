@@ -12,7 +12,7 @@ use rand::Rng;
 use rand::rngs::SmallRng;
 
 /// A place of a mesh with that centre, by a quaternion of any length. `None` if it has none.
-fn frame(q: &[f64], t: &[f64], centre: &[f64]) -> Option<InstanceFrame> {
+pub fn frame(q: &[f64], t: &[f64], centre: &[f64]) -> Option<InstanceFrame> {
     let length = (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]).sqrt();
     if !(length > 1e-3) {
         return None;
@@ -32,7 +32,12 @@ fn between(from: [f64; 3], to: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|k| to[k] - from[k])
 }
 
-fn mesh(radius: f64) -> MeshRecord {
+/// A vertex at a place.
+pub fn at_pose(frame: &InstanceFrame, v: [f64; 3]) -> Vec3<f64> {
+    rigid::moved(&frame.rows, &frame.translation, Vec3(v))
+}
+
+pub fn mesh(radius: f64) -> MeshRecord {
     MeshRecord { radius, ..MeshRecord::default() }
 }
 
@@ -158,7 +163,7 @@ fn triangles_that_meet_are_never_apart() {
         let [one, two] = [any(), any()];
         let a = frame(&[one[0], one[1], one[2], two[0]], &[place; 3], &[0.0; 3]).expect("a place");
         let mut b = frame(&[two[1], two[2], one[0], 0.7], &[place; 3], &[0.0; 3]).expect("a place");
-        let at = |frame: &InstanceFrame, v: [f64; 3]| rigid::moved(&frame.rows, &frame.translation, Vec3(v));
+        let at = at_pose;
         // A corner of the one goes to a point of an edge of the other.
         let [u, w] = [0.3, 0.7].map(|part: f64| part);
         let target = at(&a, [0, 1, 2].map(|k| w * p[0][k] + u * p[1][k])).0;

@@ -138,7 +138,8 @@ impl BodyGroups {
         let tables = given.instances.ok_or_else(without_instances)?.tables();
         self.tables = Some(tables);
         let pairs = self.pairs_of_bodies(given, counters)?;
-        Ok(RelationsArgs { tables, pairs, relations: self.relations.output(counters), counters })
+        let (relations, left_out) = (self.relations.output(counters), given.filters.left_out);
+        Ok(RelationsArgs { tables, pairs, relations, left_out, counters })
     }
 
     fn all_lists(&mut self) -> Vec<&mut dyn GrowableOutput> {

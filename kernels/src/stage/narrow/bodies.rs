@@ -30,7 +30,7 @@
 
 use super::{append_each, stride};
 use crate::abi::{BodiesNarrowArgs, NearestHit, Pair};
-use crate::bvh::placing::{PlacedTriangle, candidate, key};
+use crate::bvh::placing::{PlacedTriangle, candidate, first_of, key};
 use crate::exec::{Block, Lane};
 use crate::math::Real;
 use crate::prim::nearest::{BARELY, Corners, Nearest, apart, gap};
@@ -159,5 +159,5 @@ fn hit(key: u64, triangles: [Corners<f64>; 2], meets: bool) -> NearestHit {
     let found = if meets { Nearest::meeting(p, q) } else { Nearest::of(p, q) };
     let distance = if meets { 0.0 } else { found.distance.greater(BARELY) };
     let points = found.points(&triangles);
-    NearestHit { a: (!key >> 32) as u32, b: !key as u32, distance, at: found.at, points }
+    NearestHit { a: first_of(key), b: !key as u32, distance, at: found.at, points }
 }

@@ -26,9 +26,13 @@
 //! On a GPU the walk by leaves has a budget of steps. A longer walk spills the rest of its stack,
 //! and [`per_leaf::units`] continues it. On a CPU no walk spills. [`queue`] and [`steal`] test
 //! pairs of nodes: fewer tests, which pays for costly volumes.
+//!
+//! Filters are environments, groups and bodies tested against themselves. In a scene with pairs of
+//! bodies that are left out, [`left_out`] then drops their candidates.
 
 pub mod front;
 pub mod instances;
+pub mod left_out;
 pub mod nearest;
 pub mod per_leaf;
 pub mod queue;

@@ -140,7 +140,10 @@ fn search<R: Real, V: Volume, L: Lane>(
     while next != NONE && measures > 0 && *steps < last {
         *steps += 1;
         let siblings = [lane.read(args.nodes, next), lane.read(args.nodes, next + 1)];
-        let allowed = |k: u32| args.filters.allows(lane, filter, args.filters.of(lane, next + k));
+        let allowed = |k: u32| {
+            let other = args.filters.of(lane, next + k);
+            args.filters.allows(lane, filter, other) && !args.filters.leaves_out(lane, filter, other)
+        };
         let allowed = [allowed(0), allowed(1)];
         let gaps = siblings.map(|sibling| node.volume.apart(&sibling.volume));
         let mut inner = [false; 2];

@@ -64,8 +64,11 @@ pub fn pairs<const HORIZON: bool, V: Volume, B: Block>(block: &mut B, args: &Til
                     let meets = node.link != NONE
                         && node.last > tile
                         && own.may_overlap(&horizon.cut::<HORIZON, V>(node.volume))
-                        && (filters.is_empty()
-                            || args.filters.allows(lane, whose, lane.read(filters, place)))
+                        && (filters.is_empty() || {
+                            let other = lane.read(filters, place);
+                            args.filters.allows(lane, whose, other)
+                                && !args.filters.leaves_out(lane, whose, other)
+                        })
                         && (hub == 0 || {
                             let other = lane.read(args.rims, place);
                             let [rim, round] = [lane.read(args.rims, tile).volume, other.volume]

@@ -13,15 +13,15 @@
 //!          Which other candidates are listed depends on the schedule.
 //! Room     `pairs` may be too short: counters go on, the host grows it and runs again.
 //! Cost     an atomic load a pair of tiles. It ends there if its bodies are known to share a point,
-//!          or with keys, if no pair of its triangles comes before a known one: the first triangle
-//!          of a tile has its least number.
+//!          or with keys, if no pair of its triangles comes before a known one: a tile knows its
+//!          least number. Triangles behind the first of a known pair are no rows.
 
-use super::triangles::{LANES, Take, triangles};
+use super::triangles::{ALL, LANES, Take, triangles};
 use crate::abi::{Candidate, InstanceTables, InstancesArgs, NodePair, TouchingArgs, counter};
-use crate::bvh::placing::{APART, MEET, Signs, key, triangles_of};
+use crate::bvh::placing::{APART, MEET, Signs, first_of, key, triangles_of};
 use crate::exec::{Block, Lane, OPEN, Shared, Slot};
 
-/// Shared memory of a block: that of `triangles`, and a word.
+/// Shared memory of a block: that of `triangles`, and words.
 pub const SHARED: u32 = super::triangles::SHARED + 16;
 /// The key of all triangles if words are flags.
 const FLAG: u64 = 1;
@@ -29,7 +29,8 @@ const FLAG: u64 = 1;
 /// Decides triangles at once: words only until two share a point.
 struct Decide<'a, B: Block> {
     args: &'a TouchingArgs,
-    word: Shared<u32>,
+    /// Whether a pair of tiles is over, and the largest number that matters.
+    words: Shared<u32>,
     meets: B::Slot<bool>,
     left: B::Slot<Option<u32>>,
     places: B::Slot<u32>,
@@ -45,24 +46,26 @@ fn key_of<L: Lane>(lane: &L, tables: &InstanceTables, bodies: [u32; 2], numbers:
 impl<B: Block> Take<B> for Decide<'_, B> {
     const RUN: u32 = 8;
 
-    fn is_over(&mut self, block: &mut B, bodies: [u32; 2], tiles: &NodePair) -> bool {
+    fn matters(&mut self, block: &mut B, bodies: [u32; 2], tiles: &NodePair) -> Option<u32> {
         let args = self.args;
         block.phase(|lane| {
             if lane.lane() == 0 {
                 let known = lane.fetch_load(args.words.touching, tiles.relation);
-                let is_over = if args.has(TouchingArgs::KEYS) && known != 0 {
+                let (mut most, mut is_over) = (ALL, known != 0);
+                if args.has(TouchingArgs::KEYS) && known != 0 {
                     let least = [tiles.a, tiles.b].map(|tile| lane.read(args.of.tables.nodes, tile).first);
-                    known > key_of(lane, &args.of.tables, bodies, least)
-                } else {
-                    known != 0
-                };
+                    is_over = known > key_of(lane, &args.of.tables, bodies, least);
+                    // A triangle behind that of the known pair begins no earlier pair.
+                    most = first_of(known) - lane.read(args.of.tables.bodies, bodies[0]).triangle;
+                }
                 let behind = args.has(TouchingArgs::FIRST)
                     && args.of.counters.look(lane, counter::FIRST_BODIES) > key(bodies[0], bodies[1]);
-                lane.put(self.word, 0, (is_over | behind) as u32);
+                lane.put(self.words, 0, (is_over | behind) as u32);
+                lane.put(self.words, 1, most);
             }
             lane.meet();
         });
-        block.peek(self.word, 0) != 0
+        (block.peek(self.words, 0) == 0).then(|| block.peek(self.words, 1))
     }
 
     fn take(
@@ -132,8 +135,8 @@ impl<B: Block> Take<B> for Decide<'_, B> {
 
 /// Bodies that share a point, and candidates that are left.
 pub fn touching<B: Block>(block: &mut B, args: &TouchingArgs) {
-    let word = block.shared::<u32>(4);
+    let words = block.shared::<u32>(4);
     let mut decide =
-        Decide { args, word, meets: block.slot(false), left: block.slot(None), places: block.slot(0) };
+        Decide { args, words, meets: block.slot(false), left: block.slot(None), places: block.slot(0) };
     triangles(block, &args.of, &mut decide);
 }

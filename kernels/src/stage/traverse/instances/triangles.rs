@@ -11,7 +11,7 @@
 //!          side that has fewer of them, and columns on the other, a lane each; a row takes a test of
 //!          all columns and a vote. Planes take full warps: 100 operations in f32 a pair.
 
-use crate::abi::{Candidate, InstancesArgs, NONE, NodePair, counter};
+use crate::abi::{Candidate, InstancesArgs, NONE, NodePair, Output, Pair, counter};
 use crate::bv::FrameBox;
 use crate::bvh::pieces::Pieces;
 use crate::bvh::tiles::TILE;
@@ -25,7 +25,7 @@ pub const LANES: u32 = TILE;
 /// Pairs of triangles of two tiles.
 const FOUND: u32 = LANES * LANES;
 /// Corners of a triangle.
-type Corners = [[f32; 3]; 3];
+pub type Corners = [[f32; 3]; 3];
 /// Shared memory of a block.
 pub const SHARED: u32 =
     Pieces::<FrameBox>::bytes(LANES) + 2 * Pieces::<Corners>::bytes(LANES) + 4 * LANES + 4 * FOUND;
@@ -73,8 +73,9 @@ pub trait Take<B: Block> {
     /// How many pairs of tiles a block takes behind one another. Most are of one relation: what is
     /// known from the first may end the others.
     const RUN: u32;
-    /// Whether a pair of tiles of these bodies needs no test.
-    fn is_over(&mut self, block: &mut B, bodies: [u32; 2], tiles: &NodePair) -> bool;
+    /// The largest number, in its mesh, of a triangle of the first body that matters in a pair of
+    /// tiles; `None` if none does.
+    fn matters(&mut self, block: &mut B, bodies: [u32; 2], tiles: &NodePair) -> Option<u32>;
     /// Takes `fits` pairs of triangles that may meet, as words of [`Candidate`]. Given are the number
     /// of the pair of tiles, the bodies, and the pair.
     fn take(
@@ -87,14 +88,17 @@ pub trait Take<B: Block> {
     );
 }
 
+/// The largest number of a triangle.
+pub const ALL: u32 = NONE - 1;
+
 /// Lists all as candidates.
 struct ListAll;
 
 impl<B: Block> Take<B> for ListAll {
     const RUN: u32 = 1;
     #[inline(always)]
-    fn is_over(&mut self, _: &mut B, _: [u32; 2], _: &NodePair) -> bool {
-        false
+    fn matters(&mut self, _: &mut B, _: [u32; 2], _: &NodePair) -> Option<u32> {
+        Some(ALL)
     }
     #[inline(always)]
     fn take(
@@ -105,16 +109,7 @@ impl<B: Block> Take<B> for ListAll {
         found: Shared<u32>,
         fits: u32,
     ) {
-        let base = args.pairs.reserve(block, fits as u64);
-        block.phase(|lane| {
-            let mut at = lane.lane();
-            while at < fits {
-                let places = Candidate::of_word(lane.get(found, at));
-                args.pairs.put(lane, base + at as u64, Candidate { tile_pair, places }.pair());
-                at += LANES;
-            }
-            lane.meet();
-        });
+        list(block, args.pairs, tile_pair, (found, fits));
     }
 }
 
@@ -144,9 +139,7 @@ pub fn triangles<B: Block, T: Take<B>>(block: &mut B, args: &InstancesArgs, to: 
         }
         let pair = block.load(args.tile_pairs.items(), unit);
         let relation = block.load(args.relations.items(), pair.relation);
-        if to.is_over(block, relation.bodies, &pair) {
-            continue;
-        }
+        let Some(most) = to.matters(block, relation.bodies, &pair) else { continue };
         let [tile_a, tile_b] = [pair.a, pair.b].map(|tile| block.load(tables.nodes, tile).volume);
         let (in_second, in_first) = (relation.of_first(&tile_a).second, relation.of_second(&tile_b).first);
         block.phase(|lane| {
@@ -154,7 +147,7 @@ pub fn triangles<B: Block, T: Take<B>>(block: &mut B, args: &InstancesArgs, to: 
             let places = [pair.a * TILE + i, pair.b * TILE + i];
             let (p, q) = (lane.read(tables.leaves, places[0]), lane.read(tables.leaves, places[1]));
             let mut own = Two { boxes: [p.volume; 2], meet: [false; 2] };
-            if (p.number != NONE) & p.volume.overlaps(&in_first) {
+            if (p.number <= most) & p.volume.overlaps(&in_first) {
                 own.meet[0] = true;
                 corners[0].put(lane, i, lane.read(tables.triangles, places[0]).corners);
             }
@@ -205,34 +198,71 @@ pub fn triangles<B: Block, T: Take<B>>(block: &mut B, args: &InstancesArgs, to: 
             },
         );
         let map = Planes { slack: relation.slack };
-        let (mut at, mut fits) = (0, 0);
-        while at < fill {
-            block.map_rows(
-                &map,
-                |lane| (at + lane.lane() < fill).then(|| lane.get(found, at + lane.lane())),
-                |lane, word| {
-                    let [p, q] = Candidate::of_word(word);
-                    Some([corners[0].get(lane, p), corners[1].get(lane, q)])
-                },
-                |lane, result| {
-                    let own = result.and_then(|(word, verdict)| (verdict == MAY_MEET).then_some(word));
-                    *firsts.of(lane) = own.is_some() as u32;
-                    *kept.of(lane) = own;
-                    lane.meet();
-                },
-            );
-            let some = block.number(&mut firsts);
-            block.phase(|lane| {
-                if let Some(word) = *kept.of(lane) {
-                    // Never behind its own place, which was read.
-                    lane.put(found, fits + *firsts.of(lane), word);
-                }
-                lane.meet();
-            });
-            fits += some;
-            at += LANES;
-        }
+        let fits = sift(block, &map, corners, (found, fill), (&mut firsts, &mut kept), |_, verdict| {
+            verdict == MAY_MEET
+        });
         to.take(block, args, (unit, relation.bodies, pair), found, fits);
     }
     args.counters.add_once(block, counter::STEPS, tests);
+}
+
+/// Maps collected pairs of triangles, whose corners are on chip, and keeps some, in their order. Full
+/// warps. Returns how many.
+#[inline(always)]
+pub fn sift<B: Block, M: RowMap<Row = [Corners; 2]>>(
+    block: &mut B,
+    map: &M,
+    corners: [Pieces<Corners>; 2],
+    (found, fill): (Shared<u32>, u32),
+    (places, kept): (&mut B::Slot<u32>, &mut B::Slot<Option<u32>>),
+    mut keeps: impl FnMut(&B::Lane, u32) -> bool,
+) -> u32 {
+    let (mut at, mut fits) = (0, 0);
+    while at < fill {
+        block.map_rows(
+            map,
+            |lane| (at + lane.lane() < fill).then(|| lane.get(found, at + lane.lane())),
+            |lane, word| {
+                let [p, q] = Candidate::of_word(word);
+                Some([corners[0].get(lane, p), corners[1].get(lane, q)])
+            },
+            |lane, result| {
+                let own = result.and_then(|(word, verdict)| keeps(lane, verdict).then_some(word));
+                *places.of(lane) = own.is_some() as u32;
+                *kept.of(lane) = own;
+                lane.meet();
+            },
+        );
+        let some = block.number(places);
+        block.phase(|lane| {
+            if let Some(word) = *kept.of(lane) {
+                // Never behind its own place, which was read.
+                lane.put(found, fits + *places.of(lane), word);
+            }
+            lane.meet();
+        });
+        fits += some;
+        at += LANES;
+    }
+    fits
+}
+
+/// Lists pairs of triangles of a pair of tiles as candidates.
+#[inline(always)]
+pub fn list<B: Block>(
+    block: &mut B,
+    pairs: Output<Pair>,
+    tile_pair: u32,
+    (found, fits): (Shared<u32>, u32),
+) {
+    let base = pairs.reserve(block, fits as u64);
+    block.phase(|lane| {
+        let mut at = lane.lane();
+        while at < fits {
+            let places = Candidate::of_word(lane.get(found, at));
+            pairs.put(lane, base + at as u64, Candidate { tile_pair, places }.pair());
+            at += LANES;
+        }
+        lane.meet();
+    });
 }

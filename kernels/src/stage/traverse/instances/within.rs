@@ -16,8 +16,10 @@
 //!          Bounds change while they are read, so other candidates depend on the schedule. A pair
 //!          above is within every bound: see [`crate::bvh::gap`].
 //! Room     `pairs` may be too short: counters go on, the host grows it and runs again.
-//! Cost     `bounds` 150 operations a pair. `corners` 1,024 distances of points a pair of tiles.
+//! Cost     `bounds` 150 operations a pair. `corners` 96 distances of points a pair of tiles.
+//!          `candidates` 200 operations in f32 a pair of triangles whose boxes are near.
 
+use super::triangles::{Corners, list, sift};
 use crate::abi::{
     Candidate, InstancesWithinArgs, MeshNode, NONE, NodePair, NodesWithinArgs, Relation, RelationWords,
     counter,
@@ -25,8 +27,9 @@ use crate::abi::{
 use crate::bvh::gap::{Close, apart, farthest, limit};
 use crate::bvh::pieces::Pieces;
 use crate::bvh::tiles::TILE;
-use crate::exec::{Block, Lane, Own, PairTest, Shared, Slot};
-use crate::math::Real;
+use crate::exec::{Block, Lane, Own, PairTest, RowMap, Shared, Slot};
+use crate::math::{Real, Vec3};
+use crate::prim::planes;
 use bytemuck::Zeroable;
 
 /// Lanes of a block, a lane a triangle.
@@ -35,10 +38,12 @@ pub const LANES: u32 = TILE;
 const FOUND: u32 = LANES * LANES;
 /// A point, in shared memory.
 type Point = [f32; 3];
-/// Shared memory of `corners`: the largest gap, the least square, and points.
-pub const SHARED_CORNERS: u32 = 32 + Pieces::<Point>::bytes(LANES);
-/// Shared memory of `candidates`: the largest gap, rows with their names, and what was found.
-pub const SHARED: u32 = 16 + Pieces::<Close>::bytes(LANES) + 4 * LANES + 4 * FOUND;
+/// Shared memory of `corners`: the largest gap, the least squares, and points.
+pub const SHARED_CORNERS: u32 = 48 + 2 * Pieces::<Point>::bytes(LANES);
+/// Shared memory of `candidates`: the largest gap, the least square, rows with their names, corners,
+/// and what was found.
+pub const SHARED: u32 =
+    32 + Pieces::<Close>::bytes(LANES) + 2 * Pieces::<Corners>::bytes(LANES) + 4 * LANES + 4 * FOUND;
 
 /// No gap is within it.
 const NOTHING: f32 = -1.0;
@@ -115,12 +120,12 @@ impl Tiles {
     }
 }
 
-/// Lowers bounds by distances of first corners of triangles.
+/// Lowers bounds by distances of first corners of triangles: that of the first tile next to the
+/// middle of the second, its neighbour there, and the neighbour of that one.
 pub fn corners<B: Block>(block: &mut B, args: &InstancesWithinArgs) {
-    let (word, closest) = (block.shared::<u32>(4), block.shared::<u64>(2));
-    let points = Pieces::<Point>::new(block, LANES);
+    let (word, closest) = (block.shared::<u32>(4), block.shared::<u64>(4));
+    let points = [Pieces::<Point>::new(block, LANES), Pieces::<Point>::new(block, LANES)];
     let (count, tables) = (args.of.tile_pairs.listed(block), &args.of.tables);
-    let mut own = block.slot([0f32; 3]);
     let mut unit = block.block();
     while unit < count {
         let at = tiles(block, args, word, unit);
@@ -129,6 +134,7 @@ pub fn corners<B: Block>(block: &mut B, args: &InstancesWithinArgs) {
         if !a.reaches(&b) {
             continue;
         }
+        let middle = [0, 1, 2].map(|k| 0.5 * b.volume.lo[k] + 0.5 * b.volume.hi[k]);
         block.phase(|lane| {
             // The first place of a tile has a triangle.
             let corner = |tile: u32| {
@@ -136,29 +142,32 @@ pub fn corners<B: Block>(block: &mut B, args: &InstancesWithinArgs) {
                 let is_empty = lane.read(tables.leaves, place).number == NONE;
                 lane.read(tables.triangles, if is_empty { tile * TILE } else { place }).corners[0]
             };
-            *own.of(lane) = corner(at.pair.a);
-            points.put(lane, lane.lane(), at.relation.to_first(corner(at.pair.b)));
-            if lane.lane() == 0 {
-                lane.put(closest, 0, u64::MAX);
+            points[0].put(lane, lane.lane(), corner(at.pair.a));
+            points[1].put(lane, lane.lane(), at.relation.to_first(corner(at.pair.b)));
+            if lane.lane() < 3 {
+                lane.put(closest, lane.lane(), u64::MAX);
             }
             lane.meet();
         });
-        block.phase(|lane| {
-            let p = *own.of(lane);
-            let (mut least, mut k) = (f32::INFINITY, 0);
-            while k < LANES {
-                let q = points.get(lane, k);
-                let d = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-                least = least.lesser(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-                k += 1;
-            }
-            // Squares are at least 0: their bits are ordered as they are.
-            lane.shared_min(closest, 0, least.wide().to_bits());
-            lane.meet();
-        });
+        let mut step = 0;
+        while step < 3 {
+            block.phase(|lane| {
+                let side = step % 2;
+                let from = if step == 0 {
+                    middle
+                } else {
+                    points[1 - side].get(lane, lane.get(closest, step as u32 - 1) as u32)
+                };
+                let to = points[side].get(lane, lane.lane());
+                let d = Vec3(from) - Vec3(to);
+                lane.shared_min(closest, step as u32, (d.dot(d).to_bits() as u64) << 32 | lane.lane() as u64);
+                lane.meet();
+            });
+            step += 1;
+        }
         block.phase(|lane| {
             if lane.lane() == 0 {
-                let squared = f64::from_bits(lane.get(closest, 0));
+                let squared = f32::from_bits((lane.get(closest, 2) >> 32) as u32).wide();
                 args.words.lower(lane, at.pair.relation, apart(&at.relation, squared));
             }
             lane.meet();
@@ -177,15 +186,40 @@ impl PairTest for Near {
     }
 }
 
-/// Candidates of pairs of tiles, by the gaps of boxes in the frame of the first body.
+/// Two triangles: [`BEYOND`], or one more than the bits of the least square of two corners' distance.
+struct Between {
+    slack: f32,
+    /// The root of the largest gap's square.
+    length: f32,
+}
+
+/// Result for two that are farther apart than the length.
+const BEYOND: u32 = 0;
+
+impl RowMap for Between {
+    type Number = f32;
+    type Row = [Corners; 2];
+    #[inline(always)]
+    fn at_once(&self, [p, q]: [Corners; 2]) -> u32 {
+        let corners = |t: Corners| [Vec3(t[0]), Vec3(t[1]), Vec3(t[2])];
+        let (p, q) = (corners(p), corners(q));
+        let is_beyond = planes::farther(&p, &q, (self.slack, self.length));
+        if is_beyond { BEYOND } else { planes::corners_apart(&p, &q).to_bits() + 1 }
+    }
+}
+
+/// Candidates of pairs of tiles: pairs of triangles of which neither boxes in the frame of the first
+/// body nor heights exceed the bound. Lowers bounds by the distances of their corners.
 pub fn candidates<B: Block>(block: &mut B, args: &InstancesWithinArgs) {
-    let word = block.shared::<u32>(4);
+    let (word, closest) = (block.shared::<u32>(4), block.shared::<u64>(2));
     let rows = Pieces::<Close>::new(block, LANES);
+    let corners = [Pieces::<Corners>::new(block, LANES), Pieces::<Corners>::new(block, LANES)];
     let names = block.shared::<u32>(LANES);
     let found = block.shared::<u32>(FOUND);
     let mut columns = block.slot((Close::zeroed(), false));
     let mut row = block.slot(Close::zeroed());
     let mut places = block.slot(0u32);
+    let mut kept = block.slot(None);
     let (count, tables) = (args.of.tile_pairs.listed(block), &args.of.tables);
     let (mut unit, mut tests) = (block.block(), 0u64);
     while unit < count {
@@ -195,18 +229,31 @@ pub fn candidates<B: Block>(block: &mut B, args: &InstancesWithinArgs) {
         if !a.reaches(&b) {
             continue;
         }
+        let in_second = Close { volume: at.relation.of_first(&a.volume).second, limit: at.limit };
         block.phase(|lane| {
             let i = lane.lane();
             let close = |volume| Close { volume, limit: at.limit };
-            let p = lane.read(tables.leaves, at.pair.a * TILE + i);
+            let place = at.pair.a * TILE + i;
+            let p = lane.read(tables.leaves, place);
+            let is_row = (p.number != NONE) & close(p.volume).reaches(&b);
             *row.of(lane) = close(p.volume);
-            *places.of(lane) = ((p.number != NONE) & close(p.volume).reaches(&b)) as u32;
+            *places.of(lane) = is_row as u32;
+            if is_row {
+                corners[0].put(lane, i, lane.read(tables.triangles, place).corners);
+            }
             let place = at.pair.b * TILE + i;
-            let is_there = lane.read(tables.leaves, place).number != NONE;
-            let [x, y, z] = lane.read(tables.triangles, place).corners;
-            let of = &at.relation;
-            let q = close(of.around(&[of.to_first(x), of.to_first(y), of.to_first(z)]));
-            *columns.of(lane) = (q, is_there & q.reaches(&a));
+            let q = lane.read(tables.leaves, place);
+            *columns.of(lane) = (Close::zeroed(), false);
+            if (q.number != NONE) & close(q.volume).reaches(&in_second) {
+                let [x, y, z] = lane.read(tables.triangles, place).corners;
+                let moved = [at.relation.to_first(x), at.relation.to_first(y), at.relation.to_first(z)];
+                let q = close(at.relation.around(&moved));
+                corners[1].put(lane, i, moved);
+                *columns.of(lane) = (q, q.reaches(&a));
+            }
+            if i == 0 {
+                lane.put(closest, 0, u64::MAX);
+            }
             lane.meet();
         });
         // Numbering replaces each lane's wish: its row is tested again below.
@@ -234,16 +281,26 @@ pub fn candidates<B: Block>(block: &mut B, args: &InstancesWithinArgs) {
             },
             |lane, at, [k, name]| lane.put(found, at, Candidate::word([lane.get(names, k), name])),
         );
-        let base = args.of.pairs.reserve(block, fill as u64);
+        let map = Between { slack: at.relation.slack, length: Real::sqrt(at.limit) };
+        let fits = sift(block, &map, corners, (found, fill), (&mut places, &mut kept), |lane, verdict| {
+            let is_kept = verdict != BEYOND;
+            if is_kept {
+                // Squares are at least 0: their bits are ordered as they are.
+                lane.shared_min(closest, 0, (verdict - 1) as u64);
+            }
+            is_kept
+        });
+        if fits == 0 {
+            continue;
+        }
         block.phase(|lane| {
-            let mut at = lane.lane();
-            while at < fill {
-                let places = Candidate::of_word(lane.get(found, at));
-                args.of.pairs.put(lane, base + at as u64, Candidate { tile_pair, places }.pair());
-                at += LANES;
+            if lane.lane() == 0 {
+                let squared = f32::from_bits(lane.get(closest, 0) as u32).wide();
+                args.words.lower(lane, at.pair.relation, apart(&at.relation, squared));
             }
             lane.meet();
         });
+        list(block, args.of.pairs, tile_pair, (found, fits));
     }
     args.of.counters.add_once(block, counter::STEPS, tests);
 }
