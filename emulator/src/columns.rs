@@ -13,7 +13,7 @@ const MOST: usize = 16;
 /// At most [`WARP`] items, by columns: word `k` of item `i` is `strips[i / WIDTH][k][i % WIDTH]`.
 #[derive(Default)]
 pub struct Columns {
-    strips: [[[u32; WIDTH]; MOST]; STRIPS],
+    strips: [Strip; STRIPS],
     len: usize,
 }
 
@@ -38,35 +38,42 @@ impl Columns {
     /// Which of the items pass the test with another: bit `i` for item `i`.
     #[inline(always)]
     pub fn test<M: PairTest>(&self, other: &M::Item) -> u32 {
-        let strips = &self.strips[..self.len.div_ceil(WIDTH)];
-        let all = strips
-            .iter()
-            .enumerate()
-            .fold(0, |all, (i, strip)| all | pairs::<M>(strip, other) << (i * WIDTH));
         // Behind the last one lies what is left of others.
-        all & ((1u64 << self.len) - 1) as u32
+        strips::<M>(&self.strips[..self.len.div_ceil(WIDTH)], other) & ((1u64 << self.len) - 1) as u32
     }
 }
 
+/// Items of a strip, by words.
+type Strip = [[u32; WIDTH]; MOST];
+
 #[inline(always)]
-fn pairs<M: PairTest>(strip: &[[u32; WIDTH]; MOST], other: &M::Item) -> u32 {
+fn strips<M: PairTest>(strips: &[Strip], other: &M::Item) -> u32 {
     #[cfg(target_arch = "x86_64")]
     if is_x86_feature_detected!("avx2") {
         // SAFETY: the machine has the features that the function is compiled for.
-        return unsafe { pairs_avx2::<M>(strip, other) };
+        return unsafe { strips_avx2::<M>(strips, other) };
     }
-    each::<M>(strip, other)
+    all::<M>(strips, other)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn pairs_avx2<M: PairTest>(strip: &[[u32; WIDTH]; MOST], other: &M::Item) -> u32 {
-    each::<M>(strip, other)
+fn strips_avx2<M: PairTest>(strips: &[Strip], other: &M::Item) -> u32 {
+    all::<M>(strips, other)
+}
+
+#[inline(always)]
+fn all<M: PairTest>(strips: &[Strip], other: &M::Item) -> u32 {
+    let mut passes = 0;
+    for (i, strip) in strips.iter().enumerate() {
+        passes |= each::<M>(strip, other) << (i * WIDTH);
+    }
+    passes
 }
 
 /// The compiler vectorises the first loop.
 #[inline(always)]
-fn each<M: PairTest>(strip: &[[u32; WIDTH]; MOST], other: &M::Item) -> u32 {
+fn each<M: PairTest>(strip: &Strip, other: &M::Item) -> u32 {
     let mut passes = [0u32; WIDTH];
     for (place, passes) in passes.iter_mut().enumerate() {
         let mut item = M::Item::zeroed();

@@ -7,6 +7,7 @@ mod columns;
 mod compiled;
 mod engine;
 mod interrupt;
+mod kept;
 mod lane;
 mod observer;
 mod order;
@@ -182,6 +183,16 @@ impl Emulator {
             sanitizer.adopt(memory.addr(), memory.bytes());
         }
         Ok(memory)
+    }
+
+    /// Does work on a thread that runs blocks, if this is an engine: launches from there need not
+    /// wake one and wait.
+    pub fn inside<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        match (&self.sanitizer, &self.pool) {
+            (Some(_), _) => work(),
+            (None, Some(pool)) => pool.install(work),
+            (None, None) => rayon::scope(|_| work()),
+        }
     }
 
     /// Runs every block of a launch, and returns when they are done or `interrupt` is triggered.

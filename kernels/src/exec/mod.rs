@@ -167,6 +167,30 @@ pub struct Own<T> {
     pub end: u32,
 }
 
+/// The items of a block: `first` and each `step` further one, up to `end`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Share {
+    /// Number of the first item.
+    pub first: u32,
+    /// Distance of its next one.
+    pub step: u32,
+    /// The item behind the last.
+    pub end: u32,
+}
+
+impl Share {
+    /// Items of a block that strides over all, `each` at a time.
+    #[inline(always)]
+    pub fn striding<B: Block>(block: &B, count: u32, each: u32) -> Share {
+        Share { first: block.block() * each, step: block.blocks() * each, end: count }
+    }
+    /// Whether there are none.
+    #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        self.first >= self.end
+    }
+}
+
 /// The result for a row is still open.
 pub const OPEN: u32 = u32::MAX;
 
@@ -183,6 +207,16 @@ pub trait Block {
     fn blocks(&self) -> u32;
     /// How many lanes a block has: a multiple of 32 on the GPU.
     fn lanes(&self) -> u32;
+
+    /// The share of this block of `count` items, `each` at a time. On a GPU blocks stride, so that
+    /// neighbours are tested at the same time. Blocks that run one after another have neighbours.
+    #[inline(always)]
+    fn share(&self, count: u32, each: u32) -> Share
+    where
+        Self: Sized,
+    {
+        Share::striding(self, count, each)
+    }
 
     /// Takes `len` words of the launch's shared memory; uninitialised.
     fn shared<T: Word>(&mut self, len: u32) -> Shared<T>;
@@ -239,6 +273,26 @@ pub trait Block {
             (M::test(&own.item, &item(lane, k)) & (k < own.end)).then_some([k, own.name])
         };
         self.cross(items, first, test, put)
+    }
+
+    /// A phase in which lanes below `count` test something, for blocks of one warp: whether it
+    /// holds, and a value. Those for which it holds then put their values, with places from 0 in the
+    /// order of lanes. All test before one puts. Returns how many put.
+    #[inline(always)]
+    fn select<T: Copy>(
+        &mut self,
+        count: u32,
+        mut test: impl FnMut(&Self::Lane) -> (bool, T),
+        put: impl FnMut(&Self::Lane, u32, T),
+    ) -> u32 {
+        let test = |lane: &Self::Lane, _| {
+            if lane.lane() >= count {
+                return None;
+            }
+            let (holds, value) = test(lane);
+            holds.then_some(value)
+        };
+        self.cross(0..1, 0, test, put)
     }
 
     /// A uniform read of device memory, between phases. Nothing in this launch may write it.

@@ -207,10 +207,13 @@ pub const fn shared_bytes(lanes: u32) -> u32 {
 pub fn filter<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &F::Args) {
     let lists = F::lists(args);
     let (count, lanes) = (lists.pairs.listed(block), block.lanes());
-    let later = block.blocks() * lanes;
+    let share = block.share(count, lanes);
+    if share.is_empty() {
+        return;
+    }
     let mut waiting = Waiting::new(block);
     let mut decision = Decision::new(block);
-    let mut base = block.block() * lanes;
+    let mut base = share.first;
     // One place in the code for what is behind it, or the compiler puts it out of line: so the last
     // turn has no pairs.
     loop {
@@ -218,12 +221,12 @@ pub fn filter<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &F::Args) {
             &Apart::<R, F>(PhantomData),
             |lane| {
                 let i = base + lane.lane();
-                if i >= count {
+                if i >= share.end {
                     return None;
                 }
                 let pair = lists.pairs.get(lane, i);
                 let faces = F::triangles(lane, args, pair);
-                expect(lane, &lists.pairs, i + later, count, |pair| F::expect_pair(lane, args, pair));
+                expect(lane, &lists.pairs, i + share.step, share.end, |pair| F::expect_pair(lane, args, pair));
                 if F::LEAVES_OUT_ADJACENT && F::share_a_vertex(faces[0], faces[1]) {
                     return None;
                 }
@@ -237,7 +240,7 @@ pub fn filter<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &F::Args) {
             },
         );
         waiting.add(block);
-        let is_end = base >= count;
+        let is_end = base >= share.end;
         let (from, some) = waiting.take(block, is_end);
         if some > 0 {
             decision.run::<R, F>(block, args, &waiting, from, some);
@@ -245,7 +248,7 @@ pub fn filter<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &F::Args) {
         if is_end {
             break;
         }
-        base += later;
+        base += share.step;
     }
 }
 

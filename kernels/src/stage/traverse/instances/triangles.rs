@@ -18,7 +18,6 @@ use crate::bvh::tiles::TILE;
 use crate::exec::{Block, Lane, Own, PairTest, RowMap, Shared, Slot};
 use crate::math::Vec3;
 use crate::prim::planes;
-use bytemuck::Zeroable;
 
 /// Lanes of a block.
 pub const LANES: u32 = TILE;
@@ -28,7 +27,7 @@ const FOUND: u32 = LANES * LANES;
 type Corners = [[f32; 3]; 3];
 /// Shared memory of a block.
 pub const SHARED: u32 =
-    Pieces::<FrameBox>::bytes(LANES) + 2 * Pieces::<Corners>::bytes(LANES) + 4 * LANES + 4 * FOUND;
+    2 * Pieces::<FrameBox>::bytes(LANES) + Pieces::<Corners>::bytes(LANES) + 2 * 4 * LANES + 4 * FOUND;
 
 /// Whether boxes overlap.
 struct Overlap;
@@ -59,13 +58,6 @@ impl RowMap for Planes {
         let corners = |t: Corners| [Vec3(t[0]), Vec3(t[1]), Vec3(t[2])];
         if planes::apart(&corners(p), &corners(q), self.slack) { APART } else { MAY_MEET }
     }
-}
-
-/// A lane's triangles of both tiles, in the frame of the first.
-#[derive(Clone, Copy)]
-struct Two {
-    boxes: [FrameBox; 2],
-    meet: [bool; 2],
 }
 
 /// The end of a pair of tiles.
@@ -122,80 +114,83 @@ pub fn candidates<B: Block>(block: &mut B, args: &InstancesArgs) {
 /// Pairs of triangles of pairs of tiles, taken by `to`.
 #[inline(always)]
 pub fn triangles<B: Block>(block: &mut B, args: &InstancesArgs, to: &mut impl Take<B>) {
-    let rows = Pieces::<FrameBox>::new(block, LANES);
-    let corners = [Pieces::<Corners>::new(block, LANES), Pieces::<Corners>::new(block, LANES)];
-    let names = block.shared::<u32>(LANES);
-    let found = block.shared::<u32>(FOUND);
-    let mut two = block.slot(Two { boxes: [FrameBox::zeroed(); 2], meet: [false; 2] });
-    let mut firsts = block.slot(0u32);
-    let mut seconds = block.slot(0u32);
-    let mut kept = block.slot(None);
     let (count, tables) = (args.tile_pairs.listed(block), &args.tables);
-    let (mut unit, mut tests) = (block.block(), 0u64);
-    while unit < count {
+    let share = block.share(count, 1);
+    if share.is_empty() {
+        return;
+    }
+    let sides = [Pieces::<FrameBox>::new(block, LANES), Pieces::<FrameBox>::new(block, LANES)];
+    let corners = Pieces::<Corners>::new(block, LANES);
+    let names = [block.shared::<u32>(LANES), block.shared::<u32>(LANES)];
+    let found = block.shared::<u32>(FOUND);
+    let mut verdicts = block.slot(None);
+    let (mut unit, mut tests) = (share.first, 0u64);
+    while unit < share.end {
         let pair = block.load(args.tile_pairs.items(), unit);
         let relation = block.load(args.relations.items(), pair.relation);
+        let tile_pair = unit;
+        unit += share.step;
         if to.is_over(block, pair.relation, relation.bodies) {
-            unit += block.blocks();
             continue;
         }
         let [tile_a, tile_b] = [pair.a, pair.b].map(|tile| block.load(tables.nodes, tile).volume);
         let (in_second, in_first) = (relation.of_first(&tile_a).second, relation.of_second(&tile_b).first);
-        block.phase(|lane| {
-            let i = lane.lane();
-            let places = [pair.a * TILE + i, pair.b * TILE + i];
-            let (p, q) = (lane.read(tables.leaves, places[0]), lane.read(tables.leaves, places[1]));
-            let mut own = Two { boxes: [p.volume; 2], meet: [false; 2] };
-            if (p.number != NONE) & p.volume.overlaps(&in_first) {
-                own.meet[0] = true;
-                corners[0].put(lane, i, lane.read(tables.triangles, places[0]).corners);
-            }
-            if (q.number != NONE) & q.volume.overlaps(&in_second) {
-                let [x, y, z] = lane.read(tables.triangles, places[1]).corners;
+        tests += 2 * LANES as u64;
+        let of_a = block.select(
+            LANES,
+            |lane| {
+                let leaf = lane.read(tables.leaves, pair.a * TILE + lane.lane());
+                ((leaf.number != NONE) & leaf.volume.overlaps(&in_first), leaf.volume)
+            },
+            |lane, at, volume| {
+                sides[0].put(lane, at, volume);
+                lane.put(names[0], at, lane.lane());
+            },
+        );
+        if of_a == 0 {
+            continue;
+        }
+        let nearly = block.select(
+            LANES,
+            |lane| {
+                let leaf = lane.read(tables.leaves, pair.b * TILE + lane.lane());
+                ((leaf.number != NONE) & leaf.volume.overlaps(&in_second), ())
+            },
+            |lane, at, ()| lane.put(names[1], at, lane.lane()),
+        );
+        let of_b = block.select(
+            nearly,
+            |lane| {
+                let name = lane.get(names[1], lane.lane());
+                let [x, y, z] = lane.read(tables.triangles, pair.b * TILE + name).corners;
                 let moved = [relation.to_first(x), relation.to_first(y), relation.to_first(z)];
-                own.boxes[1] = relation.around(&moved);
-                own.meet[1] = own.boxes[1].overlaps(&tile_a);
-                corners[1].put(lane, i, moved);
-            }
-            *two.of(lane) = own;
-            (*firsts.of(lane), *seconds.of(lane)) = (own.meet[0] as u32, own.meet[1] as u32);
-            lane.meet();
-        });
-        let [of_a, of_b] = [block.number(&mut firsts), block.number(&mut seconds)];
+                let volume = relation.around(&moved);
+                (volume.overlaps(&tile_a), (name, moved, volume))
+            },
+            |lane, at, (name, moved, volume)| {
+                sides[1].put(lane, at, volume);
+                corners.put(lane, at, moved);
+                lane.put(names[1], at, name);
+            },
+        );
         // Rows are the fewer ones; columns, a lane each, cost nothing.
         let is_turned = of_b < of_a;
-        let height = if is_turned { of_b } else { of_a };
-        tests += (2 * LANES + LANES * height) as u64;
-        let tile_pair = unit;
-        unit += block.blocks();
+        let (rows, columns) = if is_turned { (sides[1], sides[0]) } else { (sides[0], sides[1]) };
+        let (height, width) = if is_turned { (of_b, of_a) } else { (of_a, of_b) };
+        tests += (LANES * height) as u64;
         if height == 0 {
             continue;
         }
-        block.phase(|lane| {
-            let own = *two.of(lane);
-            let (row, is_row) =
-                if is_turned { (own.boxes[1], own.meet[1]) } else { (own.boxes[0], own.meet[0]) };
-            let at = if is_turned { *seconds.of(lane) } else { *firsts.of(lane) };
-            if is_row {
-                rows.put(lane, at, row);
-                lane.put(names, at, lane.lane());
-            }
-            lane.meet();
-        });
         let fill = block.cross_own::<Overlap>(
             0..height,
             0,
             |lane, k| rows.get(lane, k),
             |lane| {
-                let own = *two.of(lane);
-                let (item, is_column) =
-                    if is_turned { (own.boxes[0], own.meet[0]) } else { (own.boxes[1], own.meet[1]) };
-                Own { item, name: lane.lane(), end: if is_column { height } else { 0 } }
+                let item = columns.get(lane, lane.lane());
+                Own { item, name: lane.lane(), end: if lane.lane() < width { height } else { 0 } }
             },
             |lane, at, [k, name]| {
-                let row = lane.get(names, k);
-                let places = if is_turned { [name, row] } else { [row, name] };
-                lane.put(found, at, Candidate::word(places));
+                lane.put(found, at, Candidate::word(if is_turned { [name, k] } else { [k, name] }));
             },
         );
         let map = Planes { slack: relation.slack };
@@ -206,24 +201,27 @@ pub fn triangles<B: Block>(block: &mut B, args: &InstancesArgs, to: &mut impl Ta
                 |lane| (at + lane.lane() < fill).then(|| lane.get(found, at + lane.lane())),
                 |lane, word| {
                     let [p, q] = Candidate::of_word(word);
-                    Some([corners[0].get(lane, p), corners[1].get(lane, q)])
+                    let place = pair.a * TILE + lane.get(names[0], p);
+                    Some([lane.read(tables.triangles, place).corners, corners.get(lane, q)])
                 },
                 |lane, result| {
-                    let own = result.and_then(|(word, verdict)| (verdict == MAY_MEET).then_some(word));
-                    *firsts.of(lane) = own.is_some() as u32;
-                    *kept.of(lane) = own;
+                    *verdicts.of(lane) = result;
                     lane.meet();
                 },
             );
-            let some = block.number(&mut firsts);
-            block.phase(|lane| {
-                if let Some(word) = *kept.of(lane) {
-                    // Never behind its own place, which was read.
-                    lane.put(found, fits + *firsts.of(lane), word);
-                }
-                lane.meet();
-            });
-            fits += some;
+            // Never behind its own place, which was read.
+            fits += block.select(
+                LANES,
+                |lane| {
+                    let (word, verdict) = verdicts.of(lane).unwrap_or((0, APART));
+                    (verdict == MAY_MEET, word)
+                },
+                |lane, place, word| {
+                    let [p, q] = Candidate::of_word(word);
+                    let places = [lane.get(names[0], p), lane.get(names[1], q)];
+                    lane.put(found, fits + place, Candidate::word(places));
+                },
+            );
             at += LANES;
         }
         to.take(block, args, (tile_pair, relation.bodies, pair), found, fits);
