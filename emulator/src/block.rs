@@ -1,17 +1,19 @@
 //! A block on the CPU: its phases are loops over its lanes.
 
+use crate::columns::wide;
 use crate::kept::{NONSENSE, OnChip, Piece};
 use crate::lane::{EmulatedLane, device};
 use crate::rows::{Rows, WIDTH};
 use crate::sanitizer::{Access, Place};
-use bytemuck::Pod;
+use bytemuck::{Pod, Zeroable};
 use nearmiss_kernels::abi::Span;
 use nearmiss_kernels::exec::{
-    BINS, Block, Lane, OPEN, Own, PairTest, RowMap, Share, Shared, Slot, WARP, Word,
+    BINS, Block, Lane, OPEN, Own, PairTest, RowMap, Share, Shared, Slot, WARP, Word, own,
 };
 use std::marker::PhantomData;
 use std::mem::MaybeUninit;
 use std::ops::Range;
+use std::ptr::with_exposed_provenance;
 use std::sync::atomic::{Ordering::SeqCst, fence};
 
 /// The observer: [`Looking`](crate::engine::Looking) or a
@@ -58,19 +60,25 @@ pub struct PerLane<T> {
 }
 
 impl<T: Copy> PerLane<T> {
-    fn new(init: T, len: usize) -> Self {
+    /// Memory for values that are all put before they are read.
+    fn unwritten(len: usize) -> Self {
         const { assert!(align_of::<T>() <= Piece::ALIGN) };
-        let mut memory = Piece::new(len * size_of::<T>());
-        let start = memory.start().cast::<T>();
-        for i in 0..len {
-            // SAFETY: the piece is aligned for `T` and has room for `len` of them.
-            unsafe { start.add(i).write(init) };
-        }
-        PerLane { memory, len, values: PhantomData }
+        PerLane { memory: Piece::new(len * size_of::<T>()), len, values: PhantomData }
+    }
+    fn new(init: T, len: usize) -> Self {
+        let mut values = Self::unwritten(len);
+        (0..len as u32).for_each(|i| values.put(i, init));
+        values
+    }
+    #[inline(always)]
+    fn put(&mut self, i: u32, value: T) {
+        assert!((i as usize) < self.len);
+        // SAFETY: the piece is aligned for `T` and has room for `len` of them.
+        unsafe { self.memory.start().cast::<T>().add(i as usize).write(value) };
     }
     #[inline(always)]
     fn values(&mut self) -> &mut [T] {
-        // SAFETY: `new` has written that many values, and nothing else has the memory.
+        // SAFETY: all values are put before this is called, and nothing else has the memory.
         unsafe { std::slice::from_raw_parts_mut(self.memory.start().cast::<T>(), self.len) }
     }
 }
@@ -82,6 +90,8 @@ impl<T: Copy, W> Slot<T, EmulatedLane<W>> for PerLane<T> {
     }
 }
 
+/// Rows of [`Block::cross_own`] that are tested before the first of them is put.
+const ROWS: usize = 8;
 /// No row.
 const NO_ROW: u32 = u32::MAX;
 
@@ -90,6 +100,18 @@ impl<W: Watch> Emulated<W> {
     pub fn new(block: u32, blocks: u32, lanes: u32, watch: W) -> Self {
         let (memory, words) = (OnChip::new(), std::ptr::null_mut());
         Emulated { block, blocks, lanes, phase: 0, memory, words, taken: 0, watch }
+    }
+    /// The lanes of these bits put, with places from 0. Returns how many.
+    #[inline(always)]
+    fn put_all(&mut self, mut passes: u32, mut put: impl FnMut(&EmulatedLane<W>, u32)) -> u32 {
+        let count = passes.count_ones();
+        for place in 0..count {
+            put(&self.lane(passes.trailing_zeros()), place);
+            passes &= passes - 1;
+        }
+        self.phase += 1;
+        self.watch.barrier();
+        count
     }
     fn lane(&mut self, lane: u32) -> EmulatedLane<W> {
         EmulatedLane {
@@ -129,9 +151,8 @@ impl<W: Watch> Block for Emulated<W> {
         PerLane::new(init, self.lanes as usize)
     }
     fn words<const N: usize>(&self) -> PerLane<[MaybeUninit<u32>; N]> {
-        let memory = Piece::new(self.lanes as usize * 4 * N);
         // Words that may be unwritten are valid unwritten.
-        PerLane { memory, len: self.lanes as usize, values: PhantomData }
+        PerLane::unwritten(self.lanes as usize)
     }
     #[inline(always)]
     fn share(&self, count: u32, each: u32) -> Share {
@@ -157,8 +178,8 @@ impl<W: Watch> Block for Emulated<W> {
         mut scatter: impl FnMut(&EmulatedLane<W>, Option<(T, u32)>),
     ) {
         let (watch, lanes) = (self.watch, self.lanes);
-        let mut found = self.slot(None);
-        watch.lanes(lanes, self.phase, |lane| found.values()[lane as usize] = find(&self.lane(lane)));
+        let mut found = PerLane::unwritten(lanes as usize);
+        watch.lanes(lanes, self.phase, |lane| found.put(lane, find(&self.lane(lane))));
         let mut memory = std::mem::take(&mut self.memory.rows);
         let mut rows = Rows::<M>::new(lanes as usize, &mut memory);
         // Rows of lanes that have one, without gaps.
@@ -205,16 +226,36 @@ impl<W: Watch> Block for Emulated<W> {
             passes |= u32::from(holds) << lane;
         });
         self.phase += 1;
-        let found = passes.count_ones();
-        for place in 0..found {
-            let lane = passes.trailing_zeros();
-            passes &= passes - 1;
+        self.put_all(passes, |lane, place| {
             // SAFETY: a lane that passes has written its value.
-            put(&self.lane(lane), place, unsafe { values[lane as usize % WARP as usize].assume_init() });
+            put(lane, place, unsafe { values[lane.lane() as usize % WARP as usize].assume_init() });
+        })
+    }
+    #[inline(always)]
+    fn select_columns<M: PairTest>(
+        &mut self,
+        columns: Span<u32>,
+        first: u32,
+        other: &M::Item,
+        put: impl FnMut(&EmulatedLane<W>, u32),
+    ) -> u32 {
+        assert_eq!(self.lanes, WARP, "a block of one warp");
+        let (watch, mut passes) = (self.watch, 0u32);
+        if W::STRIDES {
+            watch.lanes(WARP, self.phase, |lane| {
+                let item = own::<M, _>(&self.lane(lane), columns, first);
+                passes |= u32::from(M::test(&item, other)) << lane;
+            });
+        } else {
+            let count = size_of::<M::Item>() / size_of::<u32>();
+            assert!(first as u64 + count as u64 * WARP as u64 <= columns.len(), "columns end");
+            let start = columns.addr() + size_of::<u32>() as u64 * first as u64;
+            let start = with_exposed_provenance::<[u32; WARP as usize]>(start as usize);
+            // SAFETY: as for `EmulatedLane::read`; the span has so many words from the first on.
+            passes = wide::<M>(unsafe { std::slice::from_raw_parts(start, count) }, other);
         }
         self.phase += 1;
-        watch.barrier();
-        found
+        self.put_all(passes, put)
     }
     #[inline(always)]
     fn cross<T: Copy>(
@@ -268,15 +309,22 @@ impl<W: Watch> Block for Emulated<W> {
                 count += 1;
             }
         }
-        for k in items {
-            let other = item(&self.lane(0), k);
-            let mut passes = self.memory.columns.test::<M>(&other);
-            while passes != 0 {
-                let [lane, name, end] = whose[passes.trailing_zeros() as usize];
-                passes &= passes - 1;
-                if k < end {
-                    put(&self.lane(lane), next, [k, name]);
-                    next += 1;
+        let (mut others, mut passes) = ([M::Item::zeroed(); ROWS], [0; ROWS]);
+        for from in items.clone().step_by(ROWS) {
+            // All tests before the first branch: none waits for another.
+            let some = (items.end - from).min(ROWS as u32) as usize;
+            for (k, other) in (from..).zip(&mut others[..some]) {
+                *other = item(&self.lane(0), k);
+            }
+            self.memory.columns.test::<M>(&others[..some], &mut passes[..some]);
+            for (k, passes) in (from..).zip(&mut passes[..some]) {
+                while *passes != 0 {
+                    let [lane, name, end] = whose[passes.trailing_zeros() as usize];
+                    *passes &= *passes - 1;
+                    if k < end {
+                        put(&self.lane(lane), next, [k, name]);
+                        next += 1;
+                    }
                 }
             }
         }

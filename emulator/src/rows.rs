@@ -50,6 +50,11 @@ impl<'a, M: RowMap> Rows<'a, M> {
 
 fn at_once<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [[u32; WIDTH]]) {
     #[cfg(target_arch = "x86_64")]
+    if crate::columns::has_avx512() {
+        // SAFETY: the machine has the features that the function is compiled for.
+        return unsafe { at_once_avx512(map, columns, results) };
+    }
+    #[cfg(target_arch = "x86_64")]
     if is_x86_feature_detected!("avx2") {
         // SAFETY: the machine has the features that the function is compiled for.
         return unsafe { at_once_avx2(map, columns, results) };
@@ -60,6 +65,12 @@ fn at_once<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [[u
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn at_once_avx2<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [[u32; WIDTH]]) {
+    each(map, columns, results);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+fn at_once_avx512<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [[u32; WIDTH]]) {
     each(map, columns, results);
 }
 

@@ -30,7 +30,7 @@ pub use memory::{Shared, Word, whole_words};
 pub use ptx::ALONE;
 
 use crate::abi::Span;
-use bytemuck::Pod;
+use bytemuck::{Pod, Zeroable};
 use core::mem::MaybeUninit;
 use core::ops::Range;
 
@@ -295,6 +295,21 @@ pub trait Block {
         self.cross(0..1, 0, test, put)
     }
 
+    /// [`Block::select`] by a test of an item with each lane's own, which lies in device memory by
+    /// columns: word `k` of lane `i` is number `first + 32 k + i`. Nothing in this launch may write
+    /// it.
+    #[inline(always)]
+    fn select_columns<M: PairTest>(
+        &mut self,
+        columns: Span<u32>,
+        first: u32,
+        other: &M::Item,
+        mut put: impl FnMut(&Self::Lane, u32),
+    ) -> u32 {
+        let test = |lane: &Self::Lane| (M::test(&own::<M, _>(lane, columns, first), other), ());
+        self.select(WARP, test, |lane, place, ()| put(lane, place))
+    }
+
     /// A uniform read of device memory, between phases. Nothing in this launch may write it.
     fn load<T: Pod>(&self, span: Span<T>, i: u32) -> T;
     /// A uniform read of shared memory, between phases; a barrier follows, so that the next phase
@@ -344,6 +359,17 @@ pub trait Block {
         let total = self.scan(wishes);
         self.reserve(counter, i, total as u64)
     }
+}
+
+/// A lane's item, from columns in device memory.
+#[inline(always)]
+pub fn own<M: PairTest, L: Lane>(lane: &L, columns: Span<u32>, first: u32) -> M::Item {
+    let mut item = M::Item::zeroed();
+    let words: &mut [u32] = bytemuck::cast_slice_mut(core::slice::from_mut(&mut item));
+    for (k, word) in words.iter_mut().enumerate() {
+        *word = lane.read(columns, first + k as u32 * WARP + lane.lane());
+    }
+    item
 }
 
 /// How many bins [`Block::ranks`] has: one for each value of a byte.

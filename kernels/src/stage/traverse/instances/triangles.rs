@@ -1,17 +1,18 @@
 //! # Triangles of instances: pairs of tiles → candidates
 //! Paper    not in the paper.
 //! Launch   blocks of a warp, which stride over the pairs of tiles.
-//! Reads    a relation, two nodes, 32 contiguous triangles of each tile.
+//! Reads    a relation, two nodes, 32 contiguous boxes and triangles of each tile.
 //! Writes   candidates: a pair of tiles and two places, each once, in no order.
 //! Before   relations and pairs of tiles are listed.
 //! After    pairs ⊇ {(p, q) : p in tile a, q in tile b, placed triangles share a point}.
 //!          Boxes overlap in the frame of the first body, and no plane of the two parts them.
 //! Room     `pairs` may be too short: counters go on, the host grows it and runs again.
-//! Cost     32 B a triangle, contiguous; 48 B one that meets the other tile's box. Triangles that meet the other tile's box are rows on the
-//!          side that has fewer of them, and columns on the other, a lane each; a row takes a test of
-//!          all columns and a vote. Planes take full warps: 100 operations in f32 a pair.
+//! Cost     24 B a triangle, contiguous; 48 B one that meets the other tile's box. Those that do are
+//!          rows on the side that has fewer of them, and columns on the other, a lane each; a row
+//!          takes a test of all columns and a vote. Planes take full warps: 100 operations in f32 a
+//!          pair.
 
-use crate::abi::{Candidate, InstancesArgs, NONE, NodePair, counter};
+use crate::abi::{Candidate, InstancesArgs, MeshLeaf, NodePair, counter};
 use crate::bv::FrameBox;
 use crate::bvh::pieces::Pieces;
 use crate::bvh::tiles::TILE;
@@ -21,6 +22,8 @@ use crate::prim::planes;
 
 /// Lanes of a block.
 pub const LANES: u32 = TILE;
+/// Words of a tile's boxes, by columns.
+const COLUMNS: u32 = MeshLeaf::COLUMNS * TILE;
 /// Pairs of triangles of two tiles.
 const FOUND: u32 = LANES * LANES;
 /// Corners of a triangle.
@@ -136,35 +139,24 @@ pub fn triangles<B: Block>(block: &mut B, args: &InstancesArgs, to: &mut impl Ta
         let [tile_a, tile_b] = [pair.a, pair.b].map(|tile| block.load(tables.nodes, tile).volume);
         let (in_second, in_first) = (relation.of_first(&tile_a).second, relation.of_second(&tile_b).first);
         tests += 2 * LANES as u64;
-        let of_a = block.select(
-            LANES,
-            |lane| {
-                let leaf = lane.read(tables.leaves, pair.a * TILE + lane.lane());
-                ((leaf.number != NONE) & leaf.volume.overlaps(&in_first), leaf.volume)
-            },
-            |lane, at, volume| {
-                sides[0].put(lane, at, volume);
+        let of_a =
+            block.select_columns::<Overlap>(tables.columns, pair.a * COLUMNS, &in_first, |lane, at| {
+                sides[0].put(lane, at, lane.read(tables.leaves, pair.a * TILE + lane.lane()).volume);
                 lane.put(names[0], at, lane.lane());
-            },
-        );
+            });
         if of_a == 0 {
             continue;
         }
-        let nearly = block.select(
-            LANES,
-            |lane| {
-                let leaf = lane.read(tables.leaves, pair.b * TILE + lane.lane());
-                ((leaf.number != NONE) & leaf.volume.overlaps(&in_second), ())
-            },
-            |lane, at, ()| lane.put(names[1], at, lane.lane()),
-        );
+        let nearly =
+            block.select_columns::<Overlap>(tables.columns, pair.b * COLUMNS, &in_second, |lane, at| {
+                lane.put(names[1], at, lane.lane());
+            });
         let of_b = block.select(
             nearly,
             |lane| {
                 let name = lane.get(names[1], lane.lane());
-                let [x, y, z] = lane.read(tables.triangles, pair.b * TILE + name).corners;
-                let moved = [relation.to_first(x), relation.to_first(y), relation.to_first(z)];
-                let volume = relation.around(&moved);
+                let corners = lane.read(tables.triangles, pair.b * TILE + name).corners;
+                let (moved, volume) = relation.triangle_to_first(&corners);
                 (volume.overlaps(&tile_a), (name, moved, volume))
             },
             |lane, at, (name, moved, volume)| {
