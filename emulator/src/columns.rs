@@ -13,7 +13,7 @@ const MOST: usize = 16;
 /// At most [`WARP`] items, by columns: word `k` of item `i` is `strips[i / WIDTH][k][i % WIDTH]`.
 #[derive(Default)]
 pub struct Columns {
-    strips: [[[u32; WIDTH]; MOST]; STRIPS],
+    strips: [Strip; STRIPS],
     len: usize,
 }
 
@@ -35,43 +35,96 @@ impl Columns {
         self.len += 1;
     }
 
-    /// Which of the items pass the test with another: bit `i` for item `i`.
+    /// Which of the items pass the test with each of the others: bit `i` for item `i`.
     #[inline(always)]
-    pub fn test<M: PairTest>(&self, other: &M::Item) -> u32 {
-        let strips = &self.strips[..self.len.div_ceil(WIDTH)];
-        let all = strips
-            .iter()
-            .enumerate()
-            .fold(0, |all, (i, strip)| all | pairs::<M>(strip, other) << (i * WIDTH));
-        // Behind the last one lies what is left of others.
-        all & ((1u64 << self.len) - 1) as u32
+    pub fn test<M: PairTest>(&self, others: &[M::Item], passes: &mut [u32]) {
+        strips::<M>(&self.strips[..self.len.div_ceil(WIDTH)], others, passes);
+        // Behind the last item lies what is left of others.
+        let all = ((1u64 << self.len) - 1) as u32;
+        passes.iter_mut().for_each(|passes| *passes &= all);
     }
+}
+
+/// Items of a strip, by words.
+type Strip = [[u32; WIDTH]; MOST];
+
+/// A function of items by columns, compiled for several machines.
+macro_rules! for_each_machine {
+    ($name:ident, $wide:ident, $widest:ident, $all:ident, ($($arg:ident: $Arg:ty),*) $(-> $Out:ty)?) => {
+        #[inline(always)]
+        pub fn $name<M: PairTest>($($arg: $Arg),*) $(-> $Out)? {
+            #[cfg(target_arch = "x86_64")]
+            if has_avx512() {
+                // SAFETY: the machine has the features that the function is compiled for.
+                return unsafe { $widest::<M>($($arg),*) };
+            }
+            #[cfg(target_arch = "x86_64")]
+            if is_x86_feature_detected!("avx2") {
+                // SAFETY: as above.
+                return unsafe { $wide::<M>($($arg),*) };
+            }
+            $all::<M>($($arg),*)
+        }
+
+        #[cfg(target_arch = "x86_64")]
+        #[target_feature(enable = "avx2")]
+        fn $wide<M: PairTest>($($arg: $Arg),*) $(-> $Out)? {
+            $all::<M>($($arg),*)
+        }
+
+        #[cfg(target_arch = "x86_64")]
+        #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+        fn $widest<M: PairTest>($($arg: $Arg),*) $(-> $Out)? {
+            $all::<M>($($arg),*)
+        }
+    };
+}
+
+for_each_machine!(
+    strips, strips_avx2, strips_avx512, strips_each,
+    (strips: &[Strip], others: &[M::Item], passes: &mut [u32])
+);
+for_each_machine!(
+    wide, wide_avx2, wide_avx512, wide_each,
+    (columns: &[[u32; WARP as usize]], other: &M::Item) -> u32
+);
+
+/// Whether the machine has the vectors of 16 words that `*_avx512` functions are compiled for.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+pub fn has_avx512() -> bool {
+    is_x86_feature_detected!("avx512f")
+        && is_x86_feature_detected!("avx512bw")
+        && is_x86_feature_detected!("avx512dq")
+        && is_x86_feature_detected!("avx512vl")
 }
 
 #[inline(always)]
-fn pairs<M: PairTest>(strip: &[[u32; WIDTH]; MOST], other: &M::Item) -> u32 {
-    #[cfg(target_arch = "x86_64")]
-    if is_x86_feature_detected!("avx2") {
-        // SAFETY: the machine has the features that the function is compiled for.
-        return unsafe { pairs_avx2::<M>(strip, other) };
+fn strips_each<M: PairTest>(strips: &[Strip], others: &[M::Item], passes: &mut [u32]) {
+    for (other, passes) in others.iter().zip(passes) {
+        *passes = 0;
+        for (i, strip) in strips.iter().enumerate() {
+            *passes |= each::<M, WIDTH>(strip, other) << (i * WIDTH);
+        }
     }
-    each::<M>(strip, other)
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn pairs_avx2<M: PairTest>(strip: &[[u32; WIDTH]; MOST], other: &M::Item) -> u32 {
-    each::<M>(strip, other)
+/// Which lanes' items, by columns, pass the test with another.
+#[inline(always)]
+fn wide_each<M: PairTest>(columns: &[[u32; WARP as usize]], other: &M::Item) -> u32 {
+    each::<M, { WARP as usize }>(columns, other)
 }
 
 /// The compiler vectorises the first loop.
 #[inline(always)]
-fn each<M: PairTest>(strip: &[[u32; WIDTH]; MOST], other: &M::Item) -> u32 {
-    let mut passes = [0u32; WIDTH];
+fn each<M: PairTest, const N: usize>(columns: &[[u32; N]], other: &M::Item) -> u32 {
+    let mut passes = [0u32; N];
+    // A number that the compiler knows, or there are no vectors.
+    let columns = &columns[..size_of::<M::Item>() / size_of::<u32>()];
     for (place, passes) in passes.iter_mut().enumerate() {
         let mut item = M::Item::zeroed();
         let words: &mut [u32] = bytemuck::cast_slice_mut(std::slice::from_mut(&mut item));
-        for (word, column) in words.iter_mut().zip(strip) {
+        for (word, column) in words.iter_mut().zip(columns) {
             *word = column[place];
         }
         *passes = u32::from(M::test(&item, other)) << place;
@@ -81,7 +134,7 @@ fn each<M: PairTest>(strip: &[[u32; WIDTH]; MOST], other: &M::Item) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Columns, MOST, WIDTH, each};
+    use super::{Columns, MOST, WIDTH, each, wide};
     use nearmiss_kernels::bv::{Aabb, Linear, Volume};
     use nearmiss_kernels::exec::{PairTest, WARP};
 
@@ -113,15 +166,22 @@ mod tests {
             let items: Vec<V> = (0..count).map(|i| volume(31 * count + i)).collect();
             let mut columns = Columns::default();
             items.iter().for_each(|item| columns.push::<Overlap<V>>(item));
-            for other in 0..40 {
-                let other = volume(1000 + other);
-                let bits = columns.test::<Overlap<V>>(&other);
+            let others: Vec<V> = (0..40).map(|other| volume(1000 + other)).collect();
+            let mut together = vec![0; others.len()];
+            columns.test::<Overlap<V>>(&others, &mut together);
+            let mut in_lanes = [[0; WARP as usize]; MOST];
+            for (k, column) in in_lanes.iter_mut().enumerate() {
+                *column = std::array::from_fn(|i| columns.strips[i / WIDTH][k][i % WIDTH]);
+            }
+            for (other, bits) in others.iter().zip(together) {
                 let alone = items
                     .iter()
                     .enumerate()
-                    .fold(0, |all, (i, item)| all | u32::from(item.may_overlap(&other)) << i);
+                    .fold(0, |all, (i, item)| all | u32::from(item.may_overlap(other)) << i);
                 assert_eq!(bits, alone, "{count} items");
-                let plain = each::<Overlap<V>>(&columns.strips[0], &other);
+                let whole = wide::<Overlap<V>>(&in_lanes, other);
+                assert_eq!(whole & ((1u64 << count) - 1) as u32, alone, "{count} lanes");
+                let plain = each::<Overlap<V>, WIDTH>(&columns.strips[0], other);
                 let first = ((1u64 << (count as usize).min(WIDTH)) - 1) as u32;
                 assert_eq!(plain & first, alone & first & 0xffff, "{count} items, by the plain loop");
                 met += bits.count_ones();

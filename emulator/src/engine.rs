@@ -21,6 +21,9 @@ impl Looking<'_> {
 }
 
 impl Watch for Looking<'_> {
+    // Neighbours read the same memory.
+    const STRIDES: bool = false;
+
     #[inline(always)]
     fn lanes(&self, count: u32, _: u32, body: impl FnMut(u32)) {
         (0..count).for_each(body);

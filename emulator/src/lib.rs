@@ -7,6 +7,7 @@ mod columns;
 mod compiled;
 mod engine;
 mod interrupt;
+mod kept;
 mod lane;
 mod observer;
 mod order;
@@ -103,6 +104,9 @@ pub fn start_threads() -> Result<(), Error> {
     started.clone().map_err(|text| Error::Threads { threads, text })
 }
 
+/// Lanes of a block of an engine at most, unless a kernel needs more. A cost; no answer depends on it.
+const FEW_LANES: u32 = 64;
+
 /// A CPU that runs the kernels.
 pub struct Emulator {
     pool: Option<rayon::ThreadPool>,
@@ -160,9 +164,15 @@ impl Emulator {
         }
     }
 
-    /// Lanes of a block of a kernel.
+    /// Lanes of a block of a kernel. Those of an engine have few if they may, so that the values of
+    /// all lanes stay in the nearest cache.
     pub fn lanes<E: Entry>(&self) -> u32 {
-        self.lanes.filter(|_| !E::EXACT).unwrap_or(E::LANES)
+        match self.lanes {
+            _ if E::EXACT => E::LANES,
+            Some(lanes) => lanes,
+            None if self.sanitizer.is_none() => E::LANES.min(FEW_LANES),
+            None => E::LANES,
+        }
     }
 
     /// The sanitizer, if this is one.
@@ -182,6 +192,16 @@ impl Emulator {
             sanitizer.adopt(memory.addr(), memory.bytes());
         }
         Ok(memory)
+    }
+
+    /// Does work on a thread that runs blocks, if this is an engine: launches from there need not
+    /// wake one and wait.
+    pub fn inside<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        match (&self.sanitizer, &self.pool) {
+            (Some(_), _) => work(),
+            (None, Some(pool)) => pool.install(work),
+            (None, None) => rayon::scope(|_| work()),
+        }
     }
 
     /// Runs every block of a launch, and returns when they are done or `interrupt` is triggered.

@@ -35,6 +35,8 @@ impl<'a> BlockObserver<'a> {
 }
 
 impl Watch for &BlockObserver<'_> {
+    const STRIDES: bool = true;
+
     fn lanes(&self, count: u32, phase: u32, body: impl FnMut(u32)) {
         let turn = self.launch << 20 | phase as u64;
         self.sanitizer.order().sequence(count, turn).into_iter().for_each(body);

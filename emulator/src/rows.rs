@@ -4,7 +4,7 @@ use bytemuck::Zeroable;
 use nearmiss_kernels::exec::RowMap;
 
 /// Rows that are mapped together: two vectors of f32 on most machines, or one.
-const WIDTH: usize = 16;
+pub const WIDTH: usize = 16;
 
 /// Rows by columns, [`WIDTH`] at a time: number `k` of row `i` is
 /// `columns[i / WIDTH * NUMBERS + k][i % WIDTH]`.
@@ -41,15 +41,19 @@ impl<'a, M: RowMap> Rows<'a, M> {
         row::<M>(&self.columns[i / WIDTH * Self::NUMBERS..], i % WIDTH)
     }
 
-    /// The result of each row by vector code, or [`OPEN`](nearmiss_kernels::exec::OPEN).
-    pub fn at_once(&self, map: &M) -> Vec<u32> {
-        let mut results = vec![[0; WIDTH]; self.columns.len() / Self::NUMBERS];
-        at_once(map, self.columns, &mut results);
-        results.into_flattened()
+    /// The results of the first rows by vector code, or [`OPEN`](nearmiss_kernels::exec::OPEN): as
+    /// many strips as there are results.
+    pub fn at_once(&self, map: &M, results: &mut [[u32; WIDTH]]) {
+        at_once(map, self.columns, results);
     }
 }
 
 fn at_once<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [[u32; WIDTH]]) {
+    #[cfg(target_arch = "x86_64")]
+    if crate::columns::has_avx512() {
+        // SAFETY: the machine has the features that the function is compiled for.
+        return unsafe { at_once_avx512(map, columns, results) };
+    }
     #[cfg(target_arch = "x86_64")]
     if is_x86_feature_detected!("avx2") {
         // SAFETY: the machine has the features that the function is compiled for.
@@ -61,6 +65,12 @@ fn at_once<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [[u
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn at_once_avx2<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [[u32; WIDTH]]) {
+    each(map, columns, results);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+fn at_once_avx512<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [[u32; WIDTH]]) {
     each(map, columns, results);
 }
 
@@ -144,7 +154,9 @@ mod tests {
         let mut memory = Vec::new();
         let mut columns = Rows::<Mixed>::new(rows.len(), &mut memory);
         rows.iter().enumerate().for_each(|(i, row)| columns.set(i, row));
-        let together = columns.at_once(&Mixed);
+        let mut together = vec![[0; WIDTH]; columns.columns.len() / Rows::<Mixed>::NUMBERS];
+        columns.at_once(&Mixed, &mut together);
+        let together = together.as_flattened();
         let mut plain = vec![[0; WIDTH]; columns.columns.len() / Rows::<Mixed>::NUMBERS];
         each(&Mixed, columns.columns, &mut plain);
         for (i, row) in rows.iter().enumerate() {

@@ -201,6 +201,16 @@ impl Replay {
 }
 
 impl Device {
+    /// Does work that launches. On a CPU a thread that runs blocks does it: others need not wake it
+    /// for each launch.
+    pub(crate) fn inside<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        match &*self.machine {
+            Machine::Emulator(e) => e.inside(work),
+            #[cfg(feature = "cuda")]
+            Machine::Cuda(_) => work(),
+        }
+    }
+
     /// Does work at the same time as later work, until [`Device::join`]. Neither needs what the other
     /// writes. It is done in its turn on a CPU, outside a replay, and when stages are timed.
     ///

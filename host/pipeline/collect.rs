@@ -89,6 +89,9 @@ fn rows(found: Found, layout: &Layout, looks: &Looks) -> Rows {
             sort::extend(&mut rows, &keys, |&(_, i)| nearest_triangles(&nearest[i as usize], layout), looks);
             Rows::BodyDistances(rows.into())
         }
+        Listed::Pairs(Hits::Lists(lists)) if lists.iter().map(|list| list.len()).sum::<usize>() <= FEW => {
+            Rows::Pairs(few(lists.iter().flat_map(|list| list.iter()), layout).into())
+        }
         Listed::Pairs(hits) => {
             let pair = |p: &Pair, _| {
                 let [(a, p), (b, q)] = [p.a, p.b].map(|t| layout.locate(t, |at| at.triangle));
@@ -110,6 +113,23 @@ fn rows(found: Found, layout: &Layout, looks: &Looks) -> Rows {
             Rows::Near(each(hits, near, NearPair::key, looks))
         }
     }
+}
+
+/// So many triangle pairs are put in order by one thread: others would take as long to wake.
+const FEW: usize = 1 << 13;
+
+/// Returns a few triangle pairs as rows, in canonical order.
+fn few<'a>(pairs: impl Iterator<Item = &'a Pair>, layout: &Layout) -> Vec<TrianglePair> {
+    // Triangles are numbered body by body, so the order of their numbers is that of rows.
+    let mut keys: Vec<u64> = pairs.map(|pair| (pair.a as u64) << 32 | pair.b as u64).collect();
+    keys.sort_unstable();
+    let mut near = [0; 2];
+    let mut row = |key: u64| {
+        let mut of = |k: usize, t: u64| layout.locate_near(&mut near[k], t as u32, |at| at.triangle);
+        let ((a, p), (b, q)) = (of(0, key >> 32), of(1, key));
+        TrianglePair { bodies: [a, b], triangles: [p, q] }
+    };
+    keys.into_iter().map(&mut row).collect()
 }
 
 /// Returns rows in canonical order. Those of the device are that; contacts of lists become rows,

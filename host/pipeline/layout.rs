@@ -252,6 +252,15 @@ impl Layout {
         (BodyId(body as u32), index - of(&self.starts[body]))
     }
 
+    /// As [`Layout::locate`], for an index that is mostly in the body `near`, which becomes its body.
+    pub fn locate_near(&self, near: &mut usize, index: u32, of: impl Fn(&Offsets) -> u32) -> (BodyId, u32) {
+        let is_there = |body: usize| of(&self.starts[body]) <= index && index < of(&self.starts[body + 1]);
+        if !is_there(*near) {
+            *near = self.locate(index, &of).0.0 as usize;
+        }
+        (BodyId(*near as u32), index - of(&self.starts[*near]))
+    }
+
     /// Returns the triangles of a body: the first, and how many.
     pub fn triangles(&self, body: usize) -> (u32, u32) {
         let first = self.starts[body].triangle;

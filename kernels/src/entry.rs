@@ -154,7 +154,7 @@ kernels! {
     narrow_wide_f32: certain::wide::<Still, B>, [DiscreteArgs<f32>], NARROW, certain::SHARED;
     narrow_exact_f32: certain::exact::<f32, Still, B>, [DiscreteArgs<f32>], NARROW, certain::SHARED;
     narrow_exact_f64: certain::exact::<f64, Still, B>, [DiscreteArgs<f64>], NARROW, certain::SHARED;
-    narrow_filter_placed: discrete::filter::<f64, Placed, B>, [PlacedArgs], WIDE, discrete::shared_bytes(WIDE);
+    narrow_filter_placed: discrete::filter::<f64, Placed, B>, [PlacedArgs], WIDE, 0;
     narrow_exact_placed: certain::exact::<f64, Placed, B>, [PlacedArgs], NARROW, certain::SHARED;
     narrow_start_filter_f32: discrete::filter::<f32, Start, B>, [DiscreteArgs<f32>], WIDE, discrete::shared_bytes(WIDE), registers = 64;
     narrow_start_filter_f64: discrete::filter::<f64, Start, B>, [DiscreteArgs<f64>], WIDE, discrete::shared_bytes(WIDE);

@@ -123,6 +123,7 @@ kernels! { [Args], 64, 4096;
 }
 
 mod outputs;
+mod selects;
 mod together;
 
 /// The state after a launch.

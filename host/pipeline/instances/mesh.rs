@@ -24,6 +24,8 @@ pub struct MeshTiles {
     /// A triangle a place of a tile, and its box.
     pub triangles: Vec<MeshTriangle>,
     pub leaves: Vec<MeshLeaf>,
+    /// The boxes by columns of a tile.
+    pub columns: Vec<u32>,
     pub vertices: Vec<Point<f64>>,
     /// Levels of nodes above tiles.
     pub levels: u32,
@@ -80,9 +82,11 @@ impl MeshTiles {
             number: *number,
             pad: 0,
         };
+        let leaves: Vec<MeshLeaf> = order.iter().zip(&triangles).map(leaf).collect();
         MeshTiles {
+            columns: leaves.chunks(FAN).flat_map(columns).collect(),
             record: MeshRecord { centre, radius: ROOT_3 * largest, lo, hi, root: 0, pad: [0; 3] },
-            leaves: order.iter().zip(&triangles).map(leaf).collect(),
+            leaves,
             triangles,
             vertices: (0..positions.len() as u32).map(|v| Vec3(point(v)).into()).collect(),
             tiles,
@@ -91,6 +95,12 @@ impl MeshTiles {
             levels,
         }
     }
+}
+
+/// The boxes of a tile, by columns.
+fn columns(leaves: &[MeshLeaf]) -> impl Iterator<Item = u32> {
+    let all: Vec<_> = leaves.iter().map(MeshLeaf::columns).collect();
+    (0..MeshLeaf::COLUMNS as usize).flat_map(move |k| all.clone().into_iter().map(move |leaf| leaf[k]))
 }
 
 /// The middle of a triangle's box.

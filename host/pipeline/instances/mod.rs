@@ -27,6 +27,7 @@ pub struct Instances {
     nodes: Buffer<MeshNode>,
     triangles: Buffer<MeshTriangle>,
     leaves: Buffer<MeshLeaf>,
+    columns: Buffer<u32>,
     vertices: Buffer<Point<f64>>,
     poses: Buffer<PoseRecord>,
     tiles: u32,
@@ -96,6 +97,7 @@ impl Instances {
             nodes: of_meshes.upload(&all.nodes)?,
             triangles: of_meshes.upload(&all.triangles)?,
             leaves: of_meshes.upload(&all.leaves)?,
+            columns: of_meshes.upload(&all.columns)?,
             vertices: of_meshes.upload(&all.vertices)?,
             poses: device.of(purpose::POSES).upload(&placed)?,
             tiles: all.tiles,
@@ -147,6 +149,7 @@ impl Instances {
             nodes: self.nodes.span(),
             triangles: self.triangles.span(),
             leaves: self.leaves.span(),
+            columns: self.columns.span(),
             vertices: self.vertices.span(),
             tiles: self.tiles,
             pad: 0,
@@ -192,6 +195,7 @@ struct Joined {
     nodes: Vec<MeshNode>,
     triangles: Vec<MeshTriangle>,
     leaves: Vec<MeshLeaf>,
+    columns: Vec<u32>,
     vertices: Vec<Point<f64>>,
     first_vertices: Vec<u32>,
     tiles: u32,
@@ -214,6 +218,7 @@ impl Joined {
             };
             all.triangles.extend(mesh.triangles.iter().map(moved));
             all.leaves.extend(&mesh.leaves);
+            all.columns.extend(&mesh.columns);
             all.vertices.extend(&mesh.vertices);
             let end = above + mesh.above.len() as u32;
             let root = if mesh.above.is_empty() { tile } else { end - 1 };

@@ -76,6 +76,18 @@ pub struct MeshLeaf {
 }
 const _: () = assert!(size_of::<MeshLeaf>() == 32);
 
+impl MeshLeaf {
+    /// Columns of a tile: the numbers of a box.
+    pub const COLUMNS: u32 = 6;
+    /// The bits of a box, by columns. Not numbers without a triangle: such a box overlaps none.
+    #[inline(always)]
+    pub fn columns(&self) -> [u32; Self::COLUMNS as usize] {
+        let FrameBox { lo, hi } = self.volume;
+        let bits = |x: f32| if self.number == super::NONE { f32::NAN.to_bits() } else { x.to_bits() };
+        [bits(lo[0]), bits(lo[1]), bits(lo[2]), bits(hi[0]), bits(hi[1]), bits(hi[2])]
+    }
+}
+
 /// A triangle of a mesh, in a place of a tile.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C, align(16))]
@@ -135,6 +147,8 @@ arguments! {
         nodes: Span<MeshNode>,
         /// Boxes of the triangles of all meshes, by their places in tiles.
         leaves: Span<MeshLeaf>,
+        /// The same boxes by columns of a tile, see [`MeshLeaf::columns`].
+        columns: Span<u32>,
         /// The triangles.
         triangles: Span<MeshTriangle>,
         /// Vertices of all meshes, as they were given.

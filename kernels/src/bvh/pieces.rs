@@ -50,11 +50,13 @@ impl<T: Pod> Pieces<T> {
     /// Puts an item at a place.
     #[inline(always)]
     pub fn put<L: Lane>(self, lane: &L, place: u32, item: T) {
-        let mut pieces = [[0u32; 4]; MOST];
-        let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut pieces);
-        bytes[..size_of::<T>()].copy_from_slice(bytemuck::bytes_of(&item));
-        for (i, piece) in pieces.iter().enumerate().take(Self::EACH) {
-            lane.put(self.pieces, i as u32 * self.count + place, *piece);
+        const { assert!(size_of::<T>().is_multiple_of(4)) };
+        // Word by word: a piece that is copied in parts and read as a whole waits for its parts.
+        let words: &[u32] = bytemuck::cast_slice(core::slice::from_ref(&item));
+        let word = |at: usize| if at < words.len() { words[at] } else { 0 };
+        for i in 0..Self::EACH {
+            let piece = [word(4 * i), word(4 * i + 1), word(4 * i + 2), word(4 * i + 3)];
+            lane.put(self.pieces, i as u32 * self.count + place, piece);
         }
     }
 }

@@ -129,6 +129,35 @@ impl Relation {
         FrameBox { lo: [x.0, y.0, z.0], hi: [x.1, y.1, z.1] }
     }
 
+    /// A triangle of the second in the frame of the first, and [`Relation::around`] it. With the
+    /// bits of these, in vectors of four.
+    #[inline(always)]
+    pub fn triangle_to_first(&self, corners: &[[f32; 3]; 3]) -> ([[f32; 3]; 3], FrameBox) {
+        let column = |k: usize| [self.turn[0][k], self.turn[1][k], self.turn[2][k], 0.0];
+        let (x, y, z) = (column(0), column(1), column(2));
+        let shift = [self.shift[0], self.shift[1], self.shift[2], 0.0];
+        let moved = |p: &[f32; 3]| {
+            let mut at = [0.0; 4];
+            for i in 0..4 {
+                at[i] = x[i] * p[0] + y[i] * p[1] + z[i] * p[2] + shift[i];
+            }
+            at
+        };
+        let (p, q, r) = (moved(&corners[0]), moved(&corners[1]), moved(&corners[2]));
+        let (mut lo, mut hi) = ([0.0; 4], [0.0; 4]);
+        for i in 0..4 {
+            lo[i] = p[i].lesser(q[i]).lesser(r[i]) - self.slack;
+            hi[i] = p[i].greater(q[i]).greater(r[i]) + self.slack;
+        }
+        let three = |[x, y, z, _]: [f32; 4]| [x, y, z];
+        let volume = if self.slack == f32::INFINITY {
+            EVERYTHING
+        } else {
+            FrameBox { lo: three(lo), hi: three(hi) }
+        };
+        ([three(p), three(q), three(r)], volume)
+    }
+
     /// A volume of the first in both frames.
     #[inline(always)]
     pub fn of_first(&self, volume: &FrameBox) -> Both {

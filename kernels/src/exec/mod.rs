@@ -30,7 +30,7 @@ pub use memory::{Shared, Word, whole_words};
 pub use ptx::ALONE;
 
 use crate::abi::Span;
-use bytemuck::Pod;
+use bytemuck::{Pod, Zeroable};
 use core::mem::MaybeUninit;
 use core::ops::Range;
 
@@ -167,6 +167,30 @@ pub struct Own<T> {
     pub end: u32,
 }
 
+/// The items of a block: `first` and each `step` further one, up to `end`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Share {
+    /// Number of the first item.
+    pub first: u32,
+    /// Distance of its next one.
+    pub step: u32,
+    /// The item behind the last.
+    pub end: u32,
+}
+
+impl Share {
+    /// Items of a block that strides over all, `each` at a time.
+    #[inline(always)]
+    pub fn striding<B: Block>(block: &B, count: u32, each: u32) -> Share {
+        Share { first: block.block() * each, step: block.blocks() * each, end: count }
+    }
+    /// Whether there are none.
+    #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        self.first >= self.end
+    }
+}
+
 /// The result for a row is still open.
 pub const OPEN: u32 = u32::MAX;
 
@@ -183,6 +207,16 @@ pub trait Block {
     fn blocks(&self) -> u32;
     /// How many lanes a block has: a multiple of 32 on the GPU.
     fn lanes(&self) -> u32;
+
+    /// The share of this block of `count` items, `each` at a time. On a GPU blocks stride, so that
+    /// neighbours are tested at the same time. Blocks that run one after another have neighbours.
+    #[inline(always)]
+    fn share(&self, count: u32, each: u32) -> Share
+    where
+        Self: Sized,
+    {
+        Share::striding(self, count, each)
+    }
 
     /// Takes `len` words of the launch's shared memory; uninitialised.
     fn shared<T: Word>(&mut self, len: u32) -> Shared<T>;
@@ -241,6 +275,41 @@ pub trait Block {
         self.cross(items, first, test, put)
     }
 
+    /// A phase in which lanes below `count` test something, for blocks of one warp: whether it
+    /// holds, and a value. Those for which it holds then put their values, with places from 0 in the
+    /// order of lanes. All test before one puts. Returns how many put.
+    #[inline(always)]
+    fn select<T: Copy>(
+        &mut self,
+        count: u32,
+        mut test: impl FnMut(&Self::Lane) -> (bool, T),
+        put: impl FnMut(&Self::Lane, u32, T),
+    ) -> u32 {
+        let test = |lane: &Self::Lane, _| {
+            if lane.lane() >= count {
+                return None;
+            }
+            let (holds, value) = test(lane);
+            holds.then_some(value)
+        };
+        self.cross(0..1, 0, test, put)
+    }
+
+    /// [`Block::select`] by a test of an item with each lane's own, which lies in device memory by
+    /// columns: word `k` of lane `i` is number `first + 32 k + i`. Nothing in this launch may write
+    /// it.
+    #[inline(always)]
+    fn select_columns<M: PairTest>(
+        &mut self,
+        columns: Span<u32>,
+        first: u32,
+        other: &M::Item,
+        mut put: impl FnMut(&Self::Lane, u32),
+    ) -> u32 {
+        let test = |lane: &Self::Lane| (M::test(&own::<M, _>(lane, columns, first), other), ());
+        self.select(WARP, test, |lane, place, ()| put(lane, place))
+    }
+
     /// A uniform read of device memory, between phases. Nothing in this launch may write it.
     fn load<T: Pod>(&self, span: Span<T>, i: u32) -> T;
     /// A uniform read of shared memory, between phases; a barrier follows, so that the next phase
@@ -290,6 +359,17 @@ pub trait Block {
         let total = self.scan(wishes);
         self.reserve(counter, i, total as u64)
     }
+}
+
+/// A lane's item, from columns in device memory.
+#[inline(always)]
+pub fn own<M: PairTest, L: Lane>(lane: &L, columns: Span<u32>, first: u32) -> M::Item {
+    let mut item = M::Item::zeroed();
+    let words: &mut [u32] = bytemuck::cast_slice_mut(core::slice::from_mut(&mut item));
+    for (k, word) in words.iter_mut().enumerate() {
+        *word = lane.read(columns, first + k as u32 * WARP + lane.lane());
+    }
+    item
 }
 
 /// How many bins [`Block::ranks`] has: one for each value of a byte.

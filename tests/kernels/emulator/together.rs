@@ -97,7 +97,7 @@ fn emulator(mode: Mode, interleave: Option<u64>) -> Device {
 }
 
 /// The engine, and the sanitizer in all orders, interleaved and not.
-fn devices() -> impl Iterator<Item = (Device, String)> {
+pub fn devices() -> impl Iterator<Item = (Device, String)> {
     let orders = ORDERS.map(|order| (Mode::Sanitizer(order), None));
     let interleaved = SEEDS.map(|seed| (Mode::Sanitizer(ORDERS[seed as usize % 3]), Some(seed)));
     let all = [(Mode::Engine, None)].into_iter().chain(orders).chain(interleaved);
@@ -105,8 +105,8 @@ fn devices() -> impl Iterator<Item = (Device, String)> {
 }
 
 /// A launch of blocks of 64 lanes: the lanes' words, the blocks', the list, and the counters.
-type Words = (Vec<u32>, Vec<u32>, Vec<u32>, Vec<u64>);
-fn launch<E: Entry<Args = Args>>(device: &Device, blocks: u32) -> Result<Words, Error> {
+pub type Words = (Vec<u32>, Vec<u32>, Vec<u32>, Vec<u64>);
+pub fn launch<E: Entry<Args = Args>>(device: &Device, blocks: u32) -> Result<Words, Error> {
     let all = (blocks * E::LANES) as usize;
     let given: Vec<u32> = (0..all as u32).map(noise).collect();
     let words = |len| device.upload(&vec![0u32; len]).expect("memory");

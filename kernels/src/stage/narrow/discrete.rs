@@ -45,6 +45,8 @@ pub trait Frame<R: Real> {
     type Corner: Copy;
     /// Whether pairs with a common vertex are among the candidates and are left out.
     const LEAVES_OUT_ADJACENT: bool;
+    /// Whether candidates are parted by planes already, so that a first test of these finds nothing.
+    const ARE_PARTED: bool;
     /// The lists, and the flags of the test.
     fn lists(args: &Self::Args) -> &DiscreteArgs<R>;
     /// The triangles of a pair will be read soon.
@@ -79,6 +81,7 @@ macro_rules! in_memory {
             type Args = DiscreteArgs<R>;
             type Corner = u32;
             const LEAVES_OUT_ADJACENT: bool = $leaves_out;
+            const ARE_PARTED: bool = false;
             #[inline(always)]
             fn lists(args: &DiscreteArgs<R>) -> &DiscreteArgs<R> {
                 args
@@ -203,14 +206,27 @@ pub const fn shared_bytes(lanes: u32) -> u32 {
 }
 
 /// Signs with an error bound, in the precision of the positions: contacts, and uncertain pairs.
-/// Most pairs are separated by a plane. The others wait until there is one a lane.
+/// Most pairs are separated by a plane, unless they were tested so before. The others wait until
+/// there is one a lane.
 pub fn filter<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &F::Args) {
     let lists = F::lists(args);
     let (count, lanes) = (lists.pairs.listed(block), block.lanes());
-    let later = block.blocks() * lanes;
+    let share = block.share(count, lanes);
+    if share.is_empty() {
+        return;
+    }
+    let (mut base, mut decision) = (share.first, Decision::new(block));
+    if F::ARE_PARTED {
+        while base < share.end {
+            decision.run::<R, F>(block, args, |lane| {
+                let i = base + lane.lane();
+                (i < share.end).then(|| lists.pairs.get(lane, i))
+            });
+            base += share.step;
+        }
+        return;
+    }
     let mut waiting = Waiting::new(block);
-    let mut decision = Decision::new(block);
-    let mut base = block.block() * lanes;
     // One place in the code for what is behind it, or the compiler puts it out of line: so the last
     // turn has no pairs.
     loop {
@@ -218,12 +234,12 @@ pub fn filter<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &F::Args) {
             &Apart::<R, F>(PhantomData),
             |lane| {
                 let i = base + lane.lane();
-                if i >= count {
+                if i >= share.end {
                     return None;
                 }
                 let pair = lists.pairs.get(lane, i);
                 let faces = F::triangles(lane, args, pair);
-                expect(lane, &lists.pairs, i + later, count, |pair| F::expect_pair(lane, args, pair));
+                expect(lane, &lists.pairs, i + share.step, share.end, |pair| F::expect_pair(lane, args, pair));
                 if F::LEAVES_OUT_ADJACENT && F::share_a_vertex(faces[0], faces[1]) {
                     return None;
                 }
@@ -237,15 +253,17 @@ pub fn filter<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &F::Args) {
             },
         );
         waiting.add(block);
-        let is_end = base >= count;
+        let is_end = base >= share.end;
         let (from, some) = waiting.take(block, is_end);
         if some > 0 {
-            decision.run::<R, F>(block, args, &waiting, from, some);
+            decision.run::<R, F>(block, args, |lane| {
+                (lane.lane() < some).then(|| waiting.get(lane, from + lane.lane()))
+            });
         }
         if is_end {
             break;
         }
-        base += later;
+        base += share.step;
     }
 }
 
@@ -274,19 +292,17 @@ impl<B: Block> Decision<B> {
         Decision { pairs: block.slot((Pair::default(), APART)), entries: Entries::new(block) }
     }
 
-    /// Decides `some` of the pairs that wait, from the one at `from`; one a lane.
+    /// Decides the lanes' pairs.
     #[inline(always)]
     fn run<R: Real, F: Frame<R>>(
         &mut self,
         block: &mut B,
         args: &F::Args,
-        waiting: &Waiting<B>,
-        from: u32,
-        some: u32,
+        pair_of: impl Fn(&B::Lane) -> Option<Pair>,
     ) {
         block.map_rows(
             &Meet::<R>(PhantomData),
-            |lane| (lane.lane() < some).then(|| waiting.get(lane, from + lane.lane())),
+            pair_of,
             |lane, pair| {
                 let [p, q] = F::triangles(lane, args, pair);
                 rows::<R, F, _>(lane, args, p, q)

@@ -176,14 +176,14 @@ fn expect<L: Lane>(lane: &L, pairs: &Output<Pair>, later: u32, count: u32, prefe
 }
 
 /// Runs `body` for each stretch of `count` items of a block, with the number of the first item. A
-/// lane has one item. A grid of any size strides.
+/// lane has one item. A grid of any size has shares ([`Block::share`]).
 #[inline(always)]
 fn stride<B: Block>(block: &mut B, count: u32, mut body: impl FnMut(&mut B, u32)) {
-    let lanes = block.lanes();
-    let mut base = block.block() * lanes;
-    while base < count {
+    let share = block.share(count, block.lanes());
+    let mut base = share.first;
+    while base < share.end {
         body(block, base);
-        base += block.blocks() * lanes;
+        base += share.step;
     }
 }
 

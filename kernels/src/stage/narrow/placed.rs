@@ -36,6 +36,7 @@ impl Frame<f64> for Placed {
     /// A body, and a vertex among those of all meshes.
     type Corner = [u32; 2];
     const LEAVES_OUT_ADJACENT: bool = false;
+    const ARE_PARTED: bool = true;
 
     #[inline(always)]
     fn lists(args: &PlacedArgs) -> &DiscreteArgs<f64> {

@@ -11,7 +11,7 @@
 //!          Triangles keep their places, and meshes their centres. So the boxes of a mesh that
 //!          deforms much are loose, and never too small.
 //! Room     fixed; cannot run out.
-//! Cost     24 B a vertex, 48 B and 32 B a triangle out; 32 B a node below.
+//! Cost     24 B a vertex, 48 B, 32 B and 24 B a triangle out; 32 B a node below.
 
 use crate::abi::{MeshLeaf, MeshRefitArgs, MeshTriangle, MeshVerticesArgs, NONE, Point};
 use crate::bv::FrameBox;
@@ -62,7 +62,14 @@ pub fn corners<B: Block>(block: &mut B, args: &MeshRefitArgs) {
         let corners = [corner(vertices[0]), corner(vertices[1]), corner(vertices[2])];
         let number = lane.read(tables.leaves, place).number;
         lane.write(tables.triangles, place, MeshTriangle { corners, vertices });
-        lane.write(tables.leaves, place, MeshLeaf { volume: corners_box(&corners), number, pad: 0 });
+        let leaf = MeshLeaf { volume: corners_box(&corners), number, pad: 0 };
+        lane.write(tables.leaves, place, leaf);
+        let (columns, mut k) = (leaf.columns(), 0);
+        while k < MeshLeaf::COLUMNS {
+            let first = place / TILE * MeshLeaf::COLUMNS * TILE;
+            lane.write(tables.columns, first + k * TILE + place % TILE, columns[k as usize]);
+            k += 1;
+        }
     });
 }
 

@@ -94,6 +94,10 @@ impl<V: Volume> TileTrianglesArgs<V> {
 
 /// Pairs of triangles that overlap, until the horizon.
 pub fn triangles<const HORIZON: bool, V: Volume, B: Block>(block: &mut B, args: &TileTrianglesArgs<V>) {
+    let total = args.alone() + args.tile_pairs.listed(block) as u64;
+    if block.block() as u64 >= total {
+        return;
+    }
     let rows = Side::new::<V, B>(block);
     // Volumes that are tested in two parts: the second part takes full warps.
     let columns = if V::IN_PARTS { Side::new::<V, B>(block) } else { rows };
@@ -103,7 +107,6 @@ pub fn triangles<const HORIZON: bool, V: Volume, B: Block>(block: &mut B, args: 
     let mut ends = block.slot(0u32);
     let (mut fill, mut tests) = (0, 0u64);
     let horizon = Horizon::of(block, args.known);
-    let total = args.alone() + args.tile_pairs.listed(block) as u64;
     let mut unit = block.block() as u64;
     let mut next = Two::of(block, args, unit, total);
     // One place in the code for what is written, or the compiler puts it there twice: so the last

@@ -105,16 +105,18 @@ fn descend<T: Test, B: Block>(
     args: &NodesArgs,
     mut limit: impl FnMut(&mut B, u32, &Relation) -> f32,
 ) {
+    let is_root = args.pairs.items().is_empty();
+    let count = if is_root { args.relations.listed(block) } else { args.pairs.listed(block) };
+    let share = block.share(count, 1);
+    if share.is_empty() {
+        return;
+    }
     let rows = Pieces::<T::Item>::new(block, LANES);
     let names = block.shared::<u32>(LANES);
     let found = block.shared::<[u32; 2]>(FOUND);
-    let mut own = block.slot([T::Item::zeroed(); 2]);
-    let mut firsts = block.slot(0u32);
-    let mut meets = block.slot([false; 2]);
-    let is_root = args.pairs.items().is_empty();
-    let count = if is_root { args.relations.listed(block) } else { args.pairs.listed(block) };
-    let (mut unit, mut tests) = (block.block(), 0u64);
-    while unit < count {
+    let mut columns = block.slot((T::Item::zeroed(), false));
+    let (mut unit, mut tests) = (share.first, 0u64);
+    while unit < share.end {
         let pair = if is_root { NodePair::zeroed() } else { block.load(args.pairs.items(), unit) };
         let number = if is_root { unit } else { pair.relation };
         let relation = block.load(args.relations.items(), number);
@@ -131,44 +133,40 @@ fn descend<T: Test, B: Block>(
         let most = limit(block, number, &relation);
         let [whole_a, whole_b] =
             [relation.of_first(&of_a.volume), relation.of_second(&of_b.volume)].map(|x| T::item(x, most));
-        block.phase(|lane| {
-            let i = lane.lane();
-            let mut both = [T::Item::zeroed(); 2];
-            let mut meet = [false; 2];
-            if i < a_count {
-                both[0] = T::item(relation.of_first(&lane.read(args.tables.nodes, a + i).volume), most);
-                meet[0] = T::test(&both[0], &whole_b);
-            }
-            if i < b_count {
-                both[1] = T::item(relation.of_second(&lane.read(args.tables.nodes, b + i).volume), most);
-                meet[1] = T::test(&both[1], &whole_a);
-            }
-            *own.of(lane) = both;
-            *meets.of(lane) = meet;
-            *firsts.of(lane) = meet[0] as u32;
-            lane.meet();
-        });
-        let height = block.number(&mut firsts);
+        let height = block.select(
+            a_count.max(b_count),
+            |lane| {
+                let i = lane.lane();
+                let (mut row, mut is_row) = (T::Item::zeroed(), false);
+                if i < a_count {
+                    row = T::item(relation.of_first(&lane.read(args.tables.nodes, a + i).volume), most);
+                    is_row = T::test(&row, &whole_b);
+                }
+                if i < b_count {
+                    let node = lane.read(args.tables.nodes, b + i);
+                    let column = T::item(relation.of_second(&node.volume), most);
+                    *columns.of(lane) = (column, T::test(&column, &whole_a));
+                }
+                (is_row, row)
+            },
+            |lane, at, row| {
+                rows.put(lane, at, row);
+                lane.put(names, at, lane.lane());
+            },
+        );
         tests += (a_count + b_count + height * LANES) as u64;
-        unit += block.blocks();
+        unit += share.step;
         if height == 0 {
             continue;
         }
-        block.phase(|lane| {
-            if meets.of(lane)[0] {
-                rows.put(lane, *firsts.of(lane), own.of(lane)[0]);
-                lane.put(names, *firsts.of(lane), lane.lane());
-            }
-            lane.meet();
-        });
         let fill = block.cross_own::<T>(
             0..height,
             0,
             |lane, k| rows.get(lane, k),
-            |lane| Own {
-                item: own.of(lane)[1],
-                name: lane.lane(),
-                end: if meets.of(lane)[1] { height } else { 0 },
+            |lane| {
+                let (item, meets) = *columns.of(lane);
+                let is_column = (lane.lane() < b_count) & meets;
+                Own { item, name: lane.lane(), end: if is_column { height } else { 0 } }
             },
             |lane, at, [k, name]| lane.put(found, at, [lane.get(names, k), name]),
         );

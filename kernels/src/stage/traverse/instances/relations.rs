@@ -42,13 +42,17 @@ fn list<B: Block>(
     test: impl Fn(&Relation, &Both, &Both) -> bool + Copy,
 ) {
     let (count, lanes) = (args.pairs.listed(block), block.lanes());
+    let share = block.share(count, lanes);
+    if share.is_empty() {
+        return;
+    }
     let mut found = block.slot(None);
     let mut places = block.slot(0u32);
-    let mut base = block.block() * lanes;
-    while base < count {
+    let mut base = share.first;
+    while base < share.end {
         block.phase(|lane| {
             let i = base + lane.lane();
-            let own = if i < count { related(lane, args, i, test) } else { None };
+            let own = if i < share.end { related(lane, args, i, test) } else { None };
             *places.of(lane) = own.is_some() as u32;
             *found.of(lane) = own;
             lane.meet();
@@ -60,7 +64,7 @@ fn list<B: Block>(
             }
             lane.meet();
         });
-        base += block.blocks() * lanes;
+        base += share.step;
     }
     if block.block() == 0 {
         args.counters.add_once(block, counter::STEPS, count.into());

@@ -19,15 +19,16 @@
 //! Cost     `bounds` 150 operations a pair. `corners` 96 distances of points a pair of tiles.
 //!          `candidates` 200 operations in f32 a pair of triangles whose boxes are near.
 
-use super::triangles::{Corners, list, sift};
+use super::triangles::{COLUMNS, Corners, Overlap, list, sift};
 use crate::abi::{
     Candidate, InstancesWithinArgs, MeshNode, NONE, NodePair, NodesWithinArgs, Relation, RelationWords,
     counter,
 };
+use crate::bv::FrameBox;
 use crate::bvh::gap::{Close, apart, farthest, limit};
 use crate::bvh::pieces::Pieces;
 use crate::bvh::tiles::TILE;
-use crate::exec::{Block, Lane, Own, PairTest, RowMap, Shared, Slot};
+use crate::exec::{Block, Lane, Own, PairTest, RowMap, Shared};
 use crate::math::{Real, Vec3};
 use crate::prim::planes;
 use bytemuck::Zeroable;
@@ -40,10 +41,10 @@ const FOUND: u32 = LANES * LANES;
 type Point = [f32; 3];
 /// Shared memory of `corners`: the largest gap, the least squares, and points.
 pub const SHARED_CORNERS: u32 = 48 + 2 * Pieces::<Point>::bytes(LANES);
-/// Shared memory of `candidates`: the largest gap, the least square, rows with their names, corners,
-/// and what was found.
+/// Shared memory of `candidates`: the largest gap, the least square, two sides with their names,
+/// corners, and what was found.
 pub const SHARED: u32 =
-    32 + Pieces::<Close>::bytes(LANES) + 2 * Pieces::<Corners>::bytes(LANES) + 4 * LANES + 4 * FOUND;
+    32 + 2 * Pieces::<Close>::bytes(LANES) + Pieces::<Corners>::bytes(LANES) + 2 * 4 * LANES + 4 * FOUND;
 
 /// No gap is within it.
 const NOTHING: f32 = -1.0;
@@ -123,13 +124,17 @@ impl Tiles {
 /// Lowers bounds by distances of first corners of triangles: that of the first tile next to the
 /// middle of the second, its neighbour there, and the neighbour of that one.
 pub fn corners<B: Block>(block: &mut B, args: &InstancesWithinArgs) {
+    let (count, tables) = (args.of.tile_pairs.listed(block), &args.of.tables);
+    let share = block.share(count, 1);
+    if share.is_empty() {
+        return;
+    }
     let (word, closest) = (block.shared::<u32>(4), block.shared::<u64>(4));
     let points = [Pieces::<Point>::new(block, LANES), Pieces::<Point>::new(block, LANES)];
-    let (count, tables) = (args.of.tile_pairs.listed(block), &args.of.tables);
-    let mut unit = block.block();
-    while unit < count {
+    let mut unit = share.first;
+    while unit < share.end {
         let at = tiles(block, args, word, unit);
-        unit += block.blocks();
+        unit += share.step;
         let [a, b] = at.volumes();
         if !a.reaches(&b) {
             continue;
@@ -208,66 +213,88 @@ impl RowMap for Between {
     }
 }
 
+/// A box that is larger on all sides. `by` has the slack in it, which is more than roundings.
+#[inline(always)]
+fn grown(FrameBox { lo, hi }: FrameBox, by: f32) -> FrameBox {
+    FrameBox { lo: [lo[0] - by, lo[1] - by, lo[2] - by], hi: [hi[0] + by, hi[1] + by, hi[2] + by] }
+}
+
 /// Candidates of pairs of tiles: pairs of triangles of which neither boxes in the frame of the first
 /// body nor heights exceed the bound. Lowers bounds by the distances of their corners.
 pub fn candidates<B: Block>(block: &mut B, args: &InstancesWithinArgs) {
-    let (word, closest) = (block.shared::<u32>(4), block.shared::<u64>(2));
-    let rows = Pieces::<Close>::new(block, LANES);
-    let corners = [Pieces::<Corners>::new(block, LANES), Pieces::<Corners>::new(block, LANES)];
-    let names = block.shared::<u32>(LANES);
-    let found = block.shared::<u32>(FOUND);
-    let mut columns = block.slot((Close::zeroed(), false));
-    let mut row = block.slot(Close::zeroed());
-    let mut places = block.slot(0u32);
-    let mut kept = block.slot(None);
     let (count, tables) = (args.of.tile_pairs.listed(block), &args.of.tables);
-    let (mut unit, mut tests) = (block.block(), 0u64);
-    while unit < count {
+    let share = block.share(count, 1);
+    if share.is_empty() {
+        return;
+    }
+    let (word, closest) = (block.shared::<u32>(4), block.shared::<u64>(2));
+    let (rows, columns) = (Pieces::<Close>::new(block, LANES), Pieces::<Close>::new(block, LANES));
+    let corners = Pieces::<Corners>::new(block, LANES);
+    let names = [block.shared::<u32>(LANES), block.shared::<u32>(LANES)];
+    let found = block.shared::<u32>(FOUND);
+    let mut verdicts = block.slot(None);
+    let (mut unit, mut tests) = (share.first, 0u64);
+    while unit < share.end {
         let (at, tile_pair) = (tiles(block, args, word, unit), unit);
-        unit += block.blocks();
+        unit += share.step;
         let [a, b] = at.volumes();
         if !a.reaches(&b) {
             continue;
         }
-        let in_second = Close { volume: at.relation.of_first(&a.volume).second, limit: at.limit };
-        block.phase(|lane| {
-            let i = lane.lane();
-            let close = |volume| Close { volume, limit: at.limit };
-            let place = at.pair.a * TILE + i;
-            let p = lane.read(tables.leaves, place);
-            let is_row = (p.number != NONE) & close(p.volume).reaches(&b);
-            *row.of(lane) = close(p.volume);
-            *places.of(lane) = is_row as u32;
-            if is_row {
-                corners[0].put(lane, i, lane.read(tables.triangles, place).corners);
-            }
-            let place = at.pair.b * TILE + i;
-            let q = lane.read(tables.leaves, place);
-            *columns.of(lane) = (Close::zeroed(), false);
-            if (q.number != NONE) & close(q.volume).reaches(&in_second) {
-                let [x, y, z] = lane.read(tables.triangles, place).corners;
-                let moved = [at.relation.to_first(x), at.relation.to_first(y), at.relation.to_first(z)];
-                let q = close(at.relation.around(&moved));
-                corners[1].put(lane, i, moved);
-                *columns.of(lane) = (q, q.reaches(&a));
-            }
-            if i == 0 {
-                lane.put(closest, 0, u64::MAX);
-            }
-            lane.meet();
-        });
-        // Numbering replaces each lane's wish: its row is tested again below.
-        let height = block.number(&mut places);
-        tests += (2 * LANES + LANES * height) as u64;
+        tests += 2 * LANES as u64;
+        let close = |volume| Close { volume, limit: at.limit };
+        let (length, slack) = (Real::sqrt(at.limit), at.relation.slack);
+        // Boxes that overlap a larger one first: of all triangles of a tile at once.
+        let grown = |volume| grown(volume, length + slack);
+        let (in_second, in_first) = (at.relation.of_first(&a.volume).second, b.volume);
+        let nearly = block.select_columns::<Overlap>(
+            tables.columns,
+            at.pair.a * COLUMNS,
+            &grown(in_first),
+            |lane, to| lane.put(names[0], to, lane.lane()),
+        );
+        let height = block.select(
+            nearly,
+            |lane| {
+                let name = lane.get(names[0], lane.lane());
+                let own = close(lane.read(tables.leaves, at.pair.a * TILE + name).volume);
+                (own.reaches(&b), (name, own))
+            },
+            |lane, to, (name, own)| {
+                rows.put(lane, to, own);
+                lane.put(names[0], to, name);
+            },
+        );
         if height == 0 {
             continue;
         }
+        let nearly = block.select_columns::<Overlap>(
+            tables.columns,
+            at.pair.b * COLUMNS,
+            &grown(in_second),
+            |lane, to| lane.put(names[1], to, lane.lane()),
+        );
+        let width = block.select(
+            nearly,
+            |lane| {
+                let name = lane.get(names[1], lane.lane());
+                let own = lane.read(tables.triangles, at.pair.b * TILE + name).corners;
+                let (moved, volume) = at.relation.triangle_to_first(&own);
+                (close(volume).reaches(&a), (name, moved, close(volume)))
+            },
+            |lane, to, (name, moved, own)| {
+                columns.put(lane, to, own);
+                corners.put(lane, to, moved);
+                lane.put(names[1], to, name);
+            },
+        );
+        tests += (LANES * height) as u64;
+        if width == 0 {
+            continue;
+        }
         block.phase(|lane| {
-            let (i, own) = (lane.lane(), *row.of(lane));
-            let is_there = lane.read(tables.leaves, at.pair.a * TILE + i).number != NONE;
-            if is_there & own.reaches(&b) {
-                rows.put(lane, *places.of(lane), own);
-                lane.put(names, *places.of(lane), i);
+            if lane.lane() == 0 {
+                lane.put(closest, 0, u64::MAX);
             }
             lane.meet();
         });
@@ -276,20 +303,35 @@ pub fn candidates<B: Block>(block: &mut B, args: &InstancesWithinArgs) {
             0,
             |lane, k| rows.get(lane, k),
             |lane| {
-                let (item, is_column) = *columns.of(lane);
-                Own { item, name: lane.lane(), end: if is_column { height } else { 0 } }
+                let is_column = lane.lane() < width;
+                Own {
+                    item: columns.get(lane, if is_column { lane.lane() } else { 0 }),
+                    name: lane.lane(),
+                    end: if is_column { height } else { 0 },
+                }
             },
-            |lane, at, [k, name]| lane.put(found, at, Candidate::word([lane.get(names, k), name])),
+            |lane, to, pair| lane.put(found, to, Candidate::word(pair)),
         );
-        let map = Between { slack: at.relation.slack, length: Real::sqrt(at.limit) };
-        let fits = sift(block, &map, corners, (found, fill), (&mut places, &mut kept), |lane, verdict| {
-            let is_kept = verdict != BEYOND;
-            if is_kept {
-                // Squares are at least 0: their bits are ordered as they are.
-                lane.shared_min(closest, 0, (verdict - 1) as u64);
-            }
-            is_kept
-        });
+        let map = Between { slack, length };
+        let fits = sift(
+            block,
+            &map,
+            (found, fill),
+            &mut verdicts,
+            |lane, [p, q]| {
+                let place = at.pair.a * TILE + lane.get(names[0], p);
+                [lane.read(tables.triangles, place).corners, corners.get(lane, q)]
+            },
+            |lane, verdict| {
+                let is_kept = verdict != BEYOND;
+                if is_kept {
+                    // Squares are at least 0: their bits are ordered as they are.
+                    lane.shared_min(closest, 0, (verdict - 1) as u64);
+                }
+                is_kept
+            },
+            |lane, [p, q]| [lane.get(names[0], p), lane.get(names[1], q)],
+        );
         if fits == 0 {
             continue;
         }
