@@ -95,7 +95,7 @@ impl<V: Volume> TileTrianglesArgs<V> {
 /// Pairs of triangles that overlap, until the horizon.
 pub fn triangles<const HORIZON: bool, V: Volume, B: Block>(block: &mut B, args: &TileTrianglesArgs<V>) {
     let total = args.alone() + args.tile_pairs.listed(block) as u64;
-    if block.block() as u64 >= total {
+    if ALONE && block.block() as u64 >= total {
         return;
     }
     let rows = Side::new::<V, B>(block);
