@@ -150,11 +150,8 @@ impl Relation {
             hi[i] = p[i].greater(q[i]).greater(r[i]) + self.slack;
         }
         let three = |[x, y, z, _]: [f32; 4]| [x, y, z];
-        let volume = if self.slack == f32::INFINITY {
-            EVERYTHING
-        } else {
-            FrameBox { lo: three(lo), hi: three(hi) }
-        };
+        let volume =
+            if self.slack == f32::INFINITY { EVERYTHING } else { FrameBox { lo: three(lo), hi: three(hi) } };
         ([three(p), three(q), three(r)], volume)
     }
 

@@ -65,8 +65,10 @@ fn selected_lanes_put_in_their_order() {
         for block in 0..9 {
             let given = |lane| noise(WARP * block + lane);
             let some = (given(0) % (WARP + 2)).min(WARP);
-            let all: Vec<u32> =
-                (0..some).filter(|&lane| given(lane) % 3 == 0).map(|lane| given(lane).wrapping_add(lane)).collect();
+            let all: Vec<u32> = (0..some)
+                .filter(|&lane| given(lane) % 3 == 0)
+                .map(|lane| given(lane).wrapping_add(lane))
+                .collect();
             assert_eq!(of_block[block as usize] as usize, all.len(), "{what}");
             assert_eq!(out[(WARP * block) as usize..][..all.len()], all, "{what}");
         }

@@ -239,7 +239,9 @@ pub fn filter<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &F::Args) {
                 }
                 let pair = lists.pairs.get(lane, i);
                 let faces = F::triangles(lane, args, pair);
-                expect(lane, &lists.pairs, i + share.step, share.end, |pair| F::expect_pair(lane, args, pair));
+                expect(lane, &lists.pairs, i + share.step, share.end, |pair| {
+                    F::expect_pair(lane, args, pair)
+                });
                 if F::LEAVES_OUT_ADJACENT && F::share_a_vertex(faces[0], faces[1]) {
                     return None;
                 }
