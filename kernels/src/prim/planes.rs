@@ -12,24 +12,39 @@
 use crate::math::tolerance::{PLANE_LIMIT, PLANE_SLACK};
 use crate::math::{Real, Vec3};
 
+type Triangle = [Vec3<f32>; 3];
+
 /// Whether two triangles whose corners err by `slack` are certainly apart, by their two planes.
 /// False proves nothing. Without branches.
 #[inline(always)]
-pub fn apart(p: &[Vec3<f32>; 3], q: &[Vec3<f32>; 3], slack: f32) -> bool {
-    let normal = |t: &[Vec3<f32>; 3]| (t[1] - t[0]).cross(t[2] - t[0]);
-    parted(normal(p), p, q, slack) | parted(normal(q), p, q, slack)
+pub fn apart(p: &Triangle, q: &Triangle, slack: f32) -> bool {
+    parted(normal(p), p, [q, q], slack) | parted(normal(q), p, [q, q], slack)
+}
+
+/// The same of a triangle that stands still and one that moves from its first place to its second,
+/// by the planes of both at the start. Its corners are within `slack` of straight lines, so their
+/// heights are within those of both ends.
+#[inline(always)]
+pub fn apart_in_step(p: &Triangle, [start, end]: &[Triangle; 2], slack: f32) -> bool {
+    parted(normal(p), p, [start, end], slack) | parted(normal(start), p, [start, end], slack)
+}
+
+#[inline(always)]
+fn normal(t: &Triangle) -> Vec3<f32> {
+    (t[1] - t[0]).cross(t[2] - t[0])
 }
 
 /// Whether heights in direction `n` part them.
 #[inline(always)]
-fn parted(n: Vec3<f32>, p: &[Vec3<f32>; 3], q: &[Vec3<f32>; 3], slack: f32) -> bool {
+fn parted(n: Vec3<f32>, p: &Triangle, [start, end]: [&Triangle; 2], slack: f32) -> bool {
     let base = p[0];
-    let ends = |t: &[Vec3<f32>; 3]| {
+    let ends = |t: &Triangle| {
         let (x, y, z) = (n.dot(t[0] - base), n.dot(t[1] - base), n.dot(t[2] - base));
         (x.lesser(y).lesser(z), x.greater(y).greater(z))
     };
-    let ((p_lo, p_hi), (q_lo, q_hi)) = (ends(p), ends(q));
+    let (of_p, of_start, of_end) = (ends(p), ends(start), ends(end));
+    let (q_lo, q_hi) = (of_start.0.lesser(of_end.0), of_start.1.greater(of_end.1));
     let sum = Real::abs(n[0]) + Real::abs(n[1]) + Real::abs(n[2]);
     let allowance = PLANE_SLACK * slack * sum + f32::MIN_POSITIVE;
-    ((q_lo - p_hi > allowance) | (p_lo - q_hi > allowance)) & (allowance < PLANE_LIMIT)
+    ((q_lo - of_p.1 > allowance) | (of_p.0 - q_hi > allowance)) & (allowance < PLANE_LIMIT)
 }

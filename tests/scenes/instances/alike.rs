@@ -5,7 +5,7 @@ use nearmiss::device::emulator::{Emulator, Mode};
 use support::ORDERS;
 
 /// A size, a place, and the range of bodies about it, in sizes.
-type World = (f64, [f64; 3], f64);
+pub type World = (f64, [f64; 3], f64);
 
 /// Meshes of many sizes: of one triangle, of triangles without area, of one tile and of many.
 fn meshes(rng: &mut SmallRng, size: f64) -> Vec<Mesh> {
@@ -24,7 +24,7 @@ fn meshes(rng: &mut SmallRng, size: f64) -> Vec<Mesh> {
 }
 
 /// Bodies about a place, fixed ones among them, in environments and groups, some pairs left out.
-fn scene(rng: &mut SmallRng, (size, place, range): World, count: usize, filters: bool) -> Scene {
+pub fn scene(rng: &mut SmallRng, (size, place, range): World, count: usize, filters: bool) -> Scene {
     let meshes = meshes(rng, size);
     let mut scene = Scene::new();
     for i in 0..count {
@@ -66,7 +66,7 @@ fn poses(rng: &mut SmallRng, scene: &Scene, (size, place, range): World) -> Vec<
 }
 
 /// Sizes, and places from the origin to a million.
-const WORLDS: [World; 4] = [
+pub const WORLDS: [World; 4] = [
     (1.0, [0.0; 3], 4.0),
     (1.0, [1e6, -1e6, 1e6], 4.0),
     (1e-9, [0.0; 3], 4.0),

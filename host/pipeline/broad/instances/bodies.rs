@@ -82,7 +82,8 @@ impl PairSearch {
         let room = self.bodies.body_pairs.capacity();
         let args = self.bodies.relations_args(given, candidates.counters)?;
         launch::striding::<entry::traverse_relations>(device, room, &args)?;
-        self.bodies.descend(given, &args, |args| striding::<entry::traverse_nodes>(device, args))?;
+        let of = (args.relations, args.counters);
+        self.bodies.descend(given, of, |args| striding::<entry::traverse_nodes>(device, args))?;
         let of = self.bodies.instances_args(&args, candidates);
         let args = TouchingArgs { of, words, only_first: only_first.into(), pad: 0 };
         striding::<entry::traverse_touching>(device, &args)
@@ -98,7 +99,7 @@ impl PairSearch {
         let of = self.bodies.relations_args(given, candidates.counters)?;
         let args = RelationsWithinArgs { of, words };
         launch::striding::<entry::traverse_relations_within>(device, pairs, &args)?;
-        self.bodies.descend(given, &of, |of| {
+        self.bodies.descend(given, (of.relations, of.counters), |of| {
             let args = NodesWithinArgs { of: *of, words };
             let room = if of.pairs.room() == 0 { relations } else { of.pairs.room() as usize };
             launch::striding::<entry::traverse_bounds>(device, room, &args)?;

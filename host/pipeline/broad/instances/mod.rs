@@ -5,8 +5,10 @@
 
 mod bodies;
 mod groups;
+mod motion;
 
 pub use bodies::PairSearch;
+pub use motion::MotionSearch;
 
 use super::tiles::walk;
 use super::{BroadContext, CandidateSearch, Candidates, Placeable, broken};
@@ -19,7 +21,7 @@ use crate::pipeline::launch;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::precision::Precision;
-use bytemuck::Zeroable;
+use bytemuck::{Pod, Zeroable};
 use groups::Groups;
 use nearmiss_kernels::abi::{
     Counters, InstanceTables, InstancesArgs, MESH_LEVELS, NodePair, NodesArgs, Output, Pair, Relation,
@@ -45,11 +47,11 @@ const TURNS: u32 = 3;
 const STALE: u64 = 64;
 
 /// Bodies in groups, and the lists down to candidates.
-pub struct BodyGroups {
+pub struct BodyGroups<Q: Pod = Relation> {
     groups: Groups,
     group_pairs: List<Pair>,
     body_pairs: List<Pair>,
-    relations: List<Relation>,
+    relations: List<Q>,
     /// Pairs of nodes after each level but the last.
     node_pairs: Vec<List<NodePair>>,
     tile_pairs: List<NodePair>,
@@ -60,7 +62,7 @@ pub struct BodyGroups {
     is_stale: bool,
 }
 
-impl BodyGroups {
+impl<Q: Pod> BodyGroups<Q> {
     /// Allocates groups over the bodies of a layout. At least one body moves.
     ///
     /// # Errors
@@ -131,27 +133,16 @@ impl BodyGroups {
         Ok(pairs)
     }
 
-    /// Lists pairs of bodies whose boxes overlap, and returns arguments to relate them.
-    fn relations_args<R: Precision>(
-        &mut self,
-        given: &BroadContext<R>,
-        counters: Counters,
-    ) -> Result<RelationsArgs, Error> {
-        let tables = given.instances.ok_or_else(without_instances)?.tables();
-        self.tables = Some(tables);
-        let pairs = self.pairs_of_bodies(given, counters)?;
-        Ok(RelationsArgs { tables, pairs, relations: self.relations.output(counters), counters })
-    }
-
-    /// Goes down the meshes of related bodies to pairs of tiles: `launch` a level.
+    /// Goes down the meshes of related bodies to pairs of tiles: `launch` a level, with these
+    /// relations.
     fn descend<R: Precision>(
         &mut self,
         given: &BroadContext<R>,
-        of: &RelationsArgs,
+        (relations, counters): (Output<Relation>, Counters),
         launch: impl Fn(&NodesArgs) -> Result<(), Error>,
     ) -> Result<(), Error> {
         let instances: &Instances = given.instances.ok_or_else(without_instances)?;
-        let RelationsArgs { tables, relations, counters, .. } = *of;
+        let tables = instances.tables();
         let tile_pairs = self.tile_pairs.output(counters);
         let (levels, mut pairs) = (instances.levels.max(1), Output::EMPTY);
         debug_assert!(levels <= MESH_LEVELS);
@@ -169,24 +160,11 @@ impl BodyGroups {
         Ok(())
     }
 
-    /// Returns arguments for the triangles of pairs of tiles.
-    fn instances_args(&self, of: &RelationsArgs, candidates: &Candidates) -> InstancesArgs {
-        let RelationsArgs { tables, relations, counters, .. } = *of;
-        let tile_pairs = self.tile_pairs.output(counters);
-        InstancesArgs { tables, relations, tile_pairs, pairs: candidates.pairs, counters }
-    }
-
     fn all_lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
         let mut all: Vec<&mut dyn GrowableOutput> =
             vec![&mut self.group_pairs, &mut self.body_pairs, &mut self.relations, &mut self.tile_pairs];
         all.extend(self.node_pairs.iter_mut().map(|list| list as &mut dyn GrowableOutput));
         all
-    }
-
-    /// Returns what candidates refer to, with these words.
-    fn place(&self, words: RelationWords) -> Option<Placeable> {
-        let (relations, tile_pairs) = (self.relations.entries(), self.tile_pairs.entries());
-        self.tables.map(|tables| Placeable { tables, relations, tile_pairs, words })
     }
 
     /// Notes whether the order of bodies is stale, by a frame's counters.
@@ -204,6 +182,78 @@ impl BodyGroups {
         }
         Ok(&self.node_pairs[level])
     }
+
+    /// Puts bodies in order.
+    fn put_in_order<R: Precision>(&mut self, given: &BroadContext<R>, layout: &Layout) -> Result<(), Error> {
+        let instances = given.instances.ok_or_else(without_instances)?;
+        (self.first, self.is_stale) = (None, false);
+        self.groups.construct(given.device, layout, instances)
+    }
+
+    fn prints(&self) -> Result<Vec<(&'static str, u64)>, Error> {
+        let (order, leaves, nodes) = self.groups.download()?;
+        Ok(vec![
+            ("construct", xxh3_64(bytemuck::cast_slice(&order))),
+            ("fit", xxh3_64(bytemuck::cast_slice(&leaves))),
+            ("refit", xxh3_64(bytemuck::cast_slice(&nodes))),
+        ])
+    }
+
+    /// Checks that each body has one place, and that its box and those above hold its placed
+    /// vertices at all ends. Checks of meshes are tests of `pipeline::instances`.
+    fn check_boxes<R: Precision>(
+        &self,
+        layout: &Layout,
+        faces: &[[u32; 3]],
+        frames: &Checked<R>,
+    ) -> Result<(), Error> {
+        let mut seen = vec![false; layout.bodies()];
+        for (leaf, body, volumes) in self.groups.volumes()? {
+            let is_known = seen.get_mut(body).is_some_and(|seen| !std::mem::replace(seen, true));
+            if !is_known {
+                return Err(broken(Violation::Leaf { leaf }));
+            }
+            let (first, count) = layout.triangles(body);
+            let own = faces.iter().skip(first as usize).take(count as usize).flatten();
+            let points: Vec<Vec3<f64>> =
+                own.flat_map(|&v| frames.iter().map(move |end| end[v as usize].wide())).collect();
+            let outside = |volume: &FrameBox| points.iter().any(|&point| !volume.holds(point, point));
+            if let Some(level) = volumes.iter().position(outside) {
+                return Err(broken(Violation::Outside { leaf, level: level as u32 }));
+            }
+        }
+        match (0..seen.len()).find(|&body| layout.triangles(body).1 > 0 && !seen[body]) {
+            Some(body) => Err(broken(Violation::Leaf { leaf: body as u32 })),
+            None => Ok(()),
+        }
+    }
+}
+
+impl BodyGroups {
+    /// Lists pairs of bodies whose boxes overlap, and returns arguments to relate them.
+    fn relations_args<R: Precision>(
+        &mut self,
+        given: &BroadContext<R>,
+        counters: Counters,
+    ) -> Result<RelationsArgs, Error> {
+        let tables = given.instances.ok_or_else(without_instances)?.tables();
+        self.tables = Some(tables);
+        let pairs = self.pairs_of_bodies(given, counters)?;
+        Ok(RelationsArgs { tables, pairs, relations: self.relations.output(counters), counters })
+    }
+
+    /// Returns arguments for the triangles of pairs of tiles.
+    fn instances_args(&self, of: &RelationsArgs, candidates: &Candidates) -> InstancesArgs {
+        let RelationsArgs { tables, relations, counters, .. } = *of;
+        let tile_pairs = self.tile_pairs.output(counters);
+        InstancesArgs { tables, relations, tile_pairs, pairs: candidates.pairs, counters }
+    }
+
+    /// Returns what candidates refer to, with these words.
+    fn place(&self, words: RelationWords) -> Option<Placeable> {
+        let (relations, tile_pairs) = (self.relations.entries(), self.tile_pairs.entries());
+        self.tables.map(|tables| Placeable { tables, relations, tile_pairs, words })
+    }
 }
 
 /// Launches blocks of a warp that stride: many on a GPU, for they end at different times.
@@ -219,9 +269,7 @@ fn without_instances() -> Error {
 
 impl<R: Precision> CandidateSearch<R> for BodyGroups {
     fn construct(&mut self, given: &BroadContext<R>, layout: &Layout) -> Result<(), Error> {
-        let instances = given.instances.ok_or_else(without_instances)?;
-        (self.first, self.is_stale) = (None, false);
-        self.groups.construct(given.device, layout, instances)
+        self.put_in_order(given, layout)
     }
 
     fn learn(&mut self) -> Result<(), Error> {
@@ -245,7 +293,8 @@ impl<R: Precision> CandidateSearch<R> for BodyGroups {
         let device = given.device;
         let args = self.relations_args(given, candidates.counters)?;
         launch::striding::<entry::traverse_relations>(device, self.body_pairs.capacity(), &args)?;
-        self.descend(given, &args, |args| striding::<entry::traverse_nodes>(device, args))?;
+        let of = (args.relations, args.counters);
+        self.descend(given, of, |args| striding::<entry::traverse_nodes>(device, args))?;
         striding::<entry::traverse_instances>(device, &self.instances_args(&args, candidates))
     }
 
@@ -267,35 +316,11 @@ impl<R: Precision> CandidateSearch<R> for BodyGroups {
     }
 
     fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error> {
-        let (order, leaves, nodes) = self.groups.download()?;
-        Ok(vec![
-            ("construct", xxh3_64(bytemuck::cast_slice(&order))),
-            ("fit", xxh3_64(bytemuck::cast_slice(&leaves))),
-            ("refit", xxh3_64(bytemuck::cast_slice(&nodes))),
-        ])
+        self.prints()
     }
 
-    /// Checks that each body has one place, and that its box and those above hold its placed
-    /// vertices. Checks of meshes are tests of `pipeline::instances`.
     fn check(&self, layout: &Layout, faces: &[[u32; 3]], frames: &Checked<R>) -> Result<(), Error> {
-        let mut seen = vec![false; layout.bodies()];
-        for (leaf, body, volumes) in self.groups.volumes()? {
-            let is_known = seen.get_mut(body).is_some_and(|seen| !std::mem::replace(seen, true));
-            if !is_known {
-                return Err(broken(Violation::Leaf { leaf }));
-            }
-            let (first, count) = layout.triangles(body);
-            let own = faces.iter().skip(first as usize).take(count as usize).flatten();
-            let points: Vec<Vec3<f64>> = own.map(|&v| frames[0][v as usize].wide()).collect();
-            let outside = |volume: &FrameBox| points.iter().any(|&point| !volume.holds(point, point));
-            if let Some(level) = volumes.iter().position(outside) {
-                return Err(broken(Violation::Outside { leaf, level: level as u32 }));
-            }
-        }
-        match (0..seen.len()).find(|&body| layout.triangles(body).1 > 0 && !seen[body]) {
-            Some(body) => Err(broken(Violation::Leaf { leaf: body as u32 })),
-            None => Ok(()),
-        }
+        self.check_boxes(layout, faces, frames)
     }
 }
 
@@ -333,7 +358,7 @@ mod tests {
         CandidateSearch::<f64>::fit(&mut groups, &given)?;
         CandidateSearch::<f64>::refit(&mut groups, &given)?;
         fault(&mut groups);
-        let positions = Checked::new(vec![instances.positions(&layout)?], Vec::new());
+        let positions = Checked::new(vec![instances.positions(&layout, 0)?], Vec::new());
         CandidateSearch::<f64>::check(&groups, &layout, &layout.faces, &positions)
     }
 

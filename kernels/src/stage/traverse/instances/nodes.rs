@@ -12,13 +12,15 @@
 //! Cost     32 B a node; a box in the other frame 50 operations. Those of one side that meet the
 //!          node of the other are rows, a vote each.
 //!
+//! [`moving_nodes`] does the same for a step, by boxes around both ends: see [`crate::bvh::motion`].
+//!
 //! [`nodes_within`] keeps pairs whose gap is within the bound of their relation, see
 //! [`super::within`].
 
-use crate::abi::{MeshNode, NodePair, NodesArgs, NodesWithinArgs, Output, Relation, counter};
+use crate::abi::{MeshNode, MovingNodesArgs, NodePair, NodesArgs, NodesWithinArgs, Output, counter};
 use crate::bvh::gap::{CloseInBoth, limit};
 use crate::bvh::pieces::Pieces;
-use crate::bvh::relation::Both;
+use crate::bvh::relation::{Both, Related};
 use crate::bvh::tiles::TILE;
 use crate::exec::{Block, Lane, Own, PairTest, Slot};
 use bytemuck::Zeroable;
@@ -86,13 +88,18 @@ fn below(at: u32, node: &MeshNode) -> (u32, u32) {
 
 /// Pairs of nodes below pairs.
 pub fn nodes<B: Block>(block: &mut B, args: &NodesArgs) {
-    descend::<Overlap, B>(block, args, |_, _, _| 0.0);
+    descend::<Overlap, _, B>(block, args, args.relations, |_, _, _| 0.0);
+}
+
+/// Pairs of nodes below pairs of bodies in motion.
+pub fn moving_nodes<B: Block>(block: &mut B, args: &MovingNodesArgs) {
+    descend::<Overlap, _, B>(block, &args.of, args.relations, |_, _, _| 0.0);
 }
 
 /// Pairs of nodes below pairs that may hold the nearest pair of triangles.
 pub fn nodes_within<B: Block>(block: &mut B, args: &NodesWithinArgs) {
     let word = block.shared::<u64>(1);
-    descend::<Near, B>(block, &args.of, |block, number, relation| {
+    descend::<Near, _, B>(block, &args.of, args.of.relations, |block, number, relation| {
         limit(super::within::bound(block, &args.words, word, number), relation.slack)
     });
 }
@@ -100,10 +107,11 @@ pub fn nodes_within<B: Block>(block: &mut B, args: &NodesWithinArgs) {
 /// Pairs of nodes below pairs, by a test. `limit` returns the square of the largest gap of a
 /// relation's nodes.
 #[inline(always)]
-fn descend<T: Test, B: Block>(
+fn descend<T: Test, Q: Related, B: Block>(
     block: &mut B,
     args: &NodesArgs,
-    mut limit: impl FnMut(&mut B, u32, &Relation) -> f32,
+    relations: Output<Q>,
+    mut limit: impl FnMut(&mut B, u32, &Q) -> f32,
 ) {
     let rows = Pieces::<T::Item>::new(block, LANES);
     let names = block.shared::<u32>(LANES);
@@ -112,14 +120,14 @@ fn descend<T: Test, B: Block>(
     let mut firsts = block.slot(0u32);
     let mut meets = block.slot([false; 2]);
     let is_root = args.pairs.items().is_empty();
-    let count = if is_root { args.relations.listed(block) } else { args.pairs.listed(block) };
+    let count = if is_root { relations.listed(block) } else { args.pairs.listed(block) };
     let (mut unit, mut tests) = (block.block(), 0u64);
     while unit < count {
         let pair = if is_root { NodePair::zeroed() } else { block.load(args.pairs.items(), unit) };
         let number = if is_root { unit } else { pair.relation };
-        let relation = block.load(args.relations.items(), number);
+        let relation = block.load(relations.items(), number);
         let [a, b] = if is_root {
-            relation.bodies.map(|body| {
+            relation.bodies().map(|body| {
                 let mesh = block.load(args.tables.bodies, body).mesh;
                 block.load(args.tables.meshes, mesh).root
             })
@@ -130,17 +138,19 @@ fn descend<T: Test, B: Block>(
         let ((a, a_count), (b, b_count)) = (below(a, &of_a), below(b, &of_b));
         let most = limit(block, number, &relation);
         let [whole_a, whole_b] =
-            [relation.of_first(&of_a.volume), relation.of_second(&of_b.volume)].map(|x| T::item(x, most));
+            [relation.first_in_both(&of_a.volume), relation.second_in_both(&of_b.volume)].map(|x| T::item(x, most));
         block.phase(|lane| {
             let i = lane.lane();
             let mut both = [T::Item::zeroed(); 2];
             let mut meet = [false; 2];
             if i < a_count {
-                both[0] = T::item(relation.of_first(&lane.read(args.tables.nodes, a + i).volume), most);
+                let volume = lane.read(args.tables.nodes, a + i).volume;
+                both[0] = T::item(relation.first_in_both(&volume), most);
                 meet[0] = T::test(&both[0], &whole_b);
             }
             if i < b_count {
-                both[1] = T::item(relation.of_second(&lane.read(args.tables.nodes, b + i).volume), most);
+                let volume = lane.read(args.tables.nodes, b + i).volume;
+                both[1] = T::item(relation.second_in_both(&volume), most);
                 meet[1] = T::test(&both[1], &whole_a);
             }
             *own.of(lane) = both;

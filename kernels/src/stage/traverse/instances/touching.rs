@@ -101,5 +101,5 @@ pub fn touching<B: Block>(block: &mut B, args: &TouchingArgs) {
     let word = block.shared::<u32>(4);
     let mut decide =
         Decide { args, word, meets: block.slot(false), left: block.slot(None), places: block.slot(0) };
-    triangles(block, &args.of, &mut decide);
+    triangles(block, &args.of, args.of.relations, &mut decide);
 }

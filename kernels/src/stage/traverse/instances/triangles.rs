@@ -6,19 +6,21 @@
 //! Before   relations and pairs of tiles are listed.
 //! After    pairs ⊇ {(p, q) : p in tile a, q in tile b, placed triangles share a point}.
 //!          Boxes overlap in the frame of the first body, and no plane of the two parts them.
+//!          [`moving_candidates`]: that come within the query's distance in the step.
 //! Room     `pairs` may be too short: counters go on, the host grows it and runs again.
-//! Cost     32 B a triangle, contiguous; 48 B one that meets the other tile's box. Triangles that meet the other tile's box are rows on the
-//!          side that has fewer of them, and columns on the other, a lane each; a row takes a test of
+//! Cost     32 B a triangle, contiguous; 48 B one that meets the other tile's box. Triangles that
+//!          meet the other tile's box are rows on the side that has fewer of them, and columns on the other, a lane each; a row takes a test of
 //!          all columns and a vote. Planes take full warps: 100 operations in f32 a pair.
 
-use crate::abi::{Candidate, InstancesArgs, NONE, NodePair, counter};
+use crate::abi::{Candidate, InstancesArgs, MovingInstancesArgs, MovingRelation, NONE, NodePair};
+use crate::abi::{Output, Relation, counter};
 use crate::bv::FrameBox;
 use crate::bvh::pieces::Pieces;
+use crate::bvh::relation::Related;
 use crate::bvh::tiles::TILE;
 use crate::exec::{Block, Lane, Own, PairTest, RowMap, Shared, Slot};
-use crate::math::Vec3;
-use crate::prim::planes;
 use bytemuck::Zeroable;
+use core::marker::PhantomData;
 
 /// Lanes of a block.
 pub const LANES: u32 = TILE;
@@ -27,8 +29,14 @@ const FOUND: u32 = LANES * LANES;
 /// Corners of a triangle.
 type Corners = [[f32; 3]; 3];
 /// Shared memory of a block.
-pub const SHARED: u32 =
-    Pieces::<FrameBox>::bytes(LANES) + 2 * Pieces::<Corners>::bytes(LANES) + 4 * LANES + 4 * FOUND;
+pub const SHARED: u32 = shared_bytes::<Relation>();
+/// That of [`moving_candidates`].
+pub const SHARED_MOVING: u32 = shared_bytes::<MovingRelation>();
+
+const fn shared_bytes<Q: Related>() -> u32 {
+    let corners = Pieces::<Corners>::bytes(LANES) + Pieces::<Q::Seen>::bytes(LANES);
+    Pieces::<FrameBox>::bytes(LANES) + corners + 4 * LANES + 4 * FOUND
+}
 
 /// Whether boxes overlap.
 struct Overlap;
@@ -42,8 +50,9 @@ impl PairTest for Overlap {
 }
 
 /// The planes of two triangles.
-struct Planes {
+struct Planes<Q> {
     slack: f32,
+    of: PhantomData<Q>,
 }
 
 /// Result for two triangles that a plane parts.
@@ -51,13 +60,12 @@ const APART: u32 = 0;
 /// For two that may meet.
 const MAY_MEET: u32 = 1;
 
-impl RowMap for Planes {
+impl<Q: Related> RowMap for Planes<Q> {
     type Number = f32;
-    type Row = [Corners; 2];
+    type Row = Q::Row;
     #[inline(always)]
-    fn at_once(&self, [p, q]: [Corners; 2]) -> u32 {
-        let corners = |t: Corners| [Vec3(t[0]), Vec3(t[1]), Vec3(t[2])];
-        if planes::apart(&corners(p), &corners(q), self.slack) { APART } else { MAY_MEET }
+    fn at_once(&self, row: Q::Row) -> u32 {
+        if Q::are_apart(row, self.slack) { APART } else { MAY_MEET }
     }
 }
 
@@ -116,14 +124,25 @@ impl<B: Block> Take<B> for ListAll {
 
 /// Candidates of pairs of tiles.
 pub fn candidates<B: Block>(block: &mut B, args: &InstancesArgs) {
-    triangles(block, args, &mut ListAll);
+    triangles(block, args, args.relations, &mut ListAll);
+}
+
+/// Candidates of pairs of tiles of bodies in motion.
+pub fn moving_candidates<B: Block>(block: &mut B, args: &MovingInstancesArgs) {
+    triangles(block, &args.of, args.relations, &mut ListAll);
 }
 
 /// Pairs of triangles of pairs of tiles, taken by `to`.
 #[inline(always)]
-pub fn triangles<B: Block>(block: &mut B, args: &InstancesArgs, to: &mut impl Take<B>) {
+pub fn triangles<Q: Related, B: Block>(
+    block: &mut B,
+    args: &InstancesArgs,
+    relations: Output<Q>,
+    to: &mut impl Take<B>,
+) {
     let rows = Pieces::<FrameBox>::new(block, LANES);
-    let corners = [Pieces::<Corners>::new(block, LANES), Pieces::<Corners>::new(block, LANES)];
+    let of_first = Pieces::<Corners>::new(block, LANES);
+    let of_second = Pieces::<Q::Seen>::new(block, LANES);
     let names = block.shared::<u32>(LANES);
     let found = block.shared::<u32>(FOUND);
     let mut two = block.slot(Two { boxes: [FrameBox::zeroed(); 2], meet: [false; 2] });
@@ -134,13 +153,14 @@ pub fn triangles<B: Block>(block: &mut B, args: &InstancesArgs, to: &mut impl Ta
     let (mut unit, mut tests) = (block.block(), 0u64);
     while unit < count {
         let pair = block.load(args.tile_pairs.items(), unit);
-        let relation = block.load(args.relations.items(), pair.relation);
-        if to.is_over(block, pair.relation, relation.bodies) {
+        let relation = block.load(relations.items(), pair.relation);
+        if to.is_over(block, pair.relation, relation.bodies()) {
             unit += block.blocks();
             continue;
         }
         let [tile_a, tile_b] = [pair.a, pair.b].map(|tile| block.load(tables.nodes, tile).volume);
-        let (in_second, in_first) = (relation.of_first(&tile_a).second, relation.of_second(&tile_b).first);
+        let in_second = relation.first_in_both(&tile_a).second;
+        let in_first = relation.second_in_both(&tile_b).first;
         block.phase(|lane| {
             let i = lane.lane();
             let places = [pair.a * TILE + i, pair.b * TILE + i];
@@ -148,14 +168,13 @@ pub fn triangles<B: Block>(block: &mut B, args: &InstancesArgs, to: &mut impl Ta
             let mut own = Two { boxes: [p.volume; 2], meet: [false; 2] };
             if (p.number != NONE) & p.volume.overlaps(&in_first) {
                 own.meet[0] = true;
-                corners[0].put(lane, i, lane.read(tables.triangles, places[0]).corners);
+                of_first.put(lane, i, lane.read(tables.triangles, places[0]).corners);
             }
             if (q.number != NONE) & q.volume.overlaps(&in_second) {
-                let [x, y, z] = lane.read(tables.triangles, places[1]).corners;
-                let moved = [relation.to_first(x), relation.to_first(y), relation.to_first(z)];
-                own.boxes[1] = relation.around(&moved);
+                let seen = relation.seen(lane.read(tables.triangles, places[1]).corners);
+                own.boxes[1] = relation.around_seen(&seen);
                 own.meet[1] = own.boxes[1].overlaps(&tile_a);
-                corners[1].put(lane, i, moved);
+                of_second.put(lane, i, seen);
             }
             *two.of(lane) = own;
             (*firsts.of(lane), *seconds.of(lane)) = (own.meet[0] as u32, own.meet[1] as u32);
@@ -198,7 +217,7 @@ pub fn triangles<B: Block>(block: &mut B, args: &InstancesArgs, to: &mut impl Ta
                 lane.put(found, at, Candidate::word(places));
             },
         );
-        let map = Planes { slack: relation.slack };
+        let map = Planes::<Q> { slack: relation.slack(), of: PhantomData };
         let (mut at, mut fits) = (0, 0);
         while at < fill {
             block.map_rows(
@@ -206,7 +225,7 @@ pub fn triangles<B: Block>(block: &mut B, args: &InstancesArgs, to: &mut impl Ta
                 |lane| (at + lane.lane() < fill).then(|| lane.get(found, at + lane.lane())),
                 |lane, word| {
                     let [p, q] = Candidate::of_word(word);
-                    Some([corners[0].get(lane, p), corners[1].get(lane, q)])
+                    Some(Q::row(of_first.get(lane, p), of_second.get(lane, q)))
                 },
                 |lane, result| {
                     let own = result.and_then(|(word, verdict)| (verdict == MAY_MEET).then_some(word));
@@ -226,7 +245,7 @@ pub fn triangles<B: Block>(block: &mut B, args: &InstancesArgs, to: &mut impl Ta
             fits += some;
             at += LANES;
         }
-        to.take(block, args, (tile_pair, relation.bodies, pair), found, fits);
+        to.take(block, args, (tile_pair, relation.bodies(), pair), found, fits);
     }
     args.counters.add_once(block, counter::STEPS, tests);
 }
