@@ -1,7 +1,7 @@
 //! Queries of features: in a step, turning and straight, with and without a separation, the first
 //! contact, and near at rest. Everything reported is that of placed vertices, frame after frame.
 
-use super::alike::{WORLDS, World, scene};
+use super::alike::{FAR, WORLDS, World, scene};
 use super::*;
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::research::{BroadPhase, DetectorExt};
@@ -56,7 +56,7 @@ fn queries(size: f64) -> Vec<Query> {
         Earliest::default().with_min_separation(0.02 * size).with_tolerance(0.001 * size).into(),
         Continuous::default().with_tolerance(0.1 * size).into(),
         Query::near(0.1 * size),
-        Query::near(0.0),
+        Query::near(1e-6 * size),
     ]
 }
 
@@ -93,26 +93,44 @@ fn moved(both: &mut Both, motions: &[(BodyId, Motion)]) {
 #[test]
 fn steps_are_those_of_placed_vertices() {
     let mut rng = SmallRng::seed_from_u64(21);
-    for world in WORLDS {
-        for (ways, filters) in
-            [(Ways::Straight, true), (Ways::Turning, false), (Ways::Turning, true), (Ways::Any, false)]
-        {
-            let scene = scene(&mut rng, world, 24, filters);
+    for (size, place, _) in WORLDS {
+        let kinds = [(Ways::Straight, 24), (Ways::Turning, 9), (Ways::Any, 9)];
+        for (ways, count) in kinds {
+            let world = (size, place, 3.0);
+            let scene = scene(&mut rng, world, count, ways == Ways::Straight);
             let mut both = Both::new(&engine(), &scene);
             let mut rows = 0;
             for frame in 0..2 {
                 let all = steps(&mut rng, &scene, world, ways);
                 // The second time few are named, the others rest at the end of their steps.
-                let named = if frame == 0 { &all[..] } else { &all[2..9] };
+                let named = if frame == 0 { &all[..] } else { &all[2..5] };
                 moved(&mut both, named);
-                for query in queries(world.0) {
+                let all_of_them = queries(world.0);
+                for query in all_of_them.into_iter().take(if frame == 0 { 7 } else { 2 }) {
                     let own = same(&mut both, query);
                     rows += own.unwrap_or_else(|error| panic!("{world:?} {ways:?} {frame}: {error}"));
                     assert!(reads(&mut both.own, &query), "{query:?}");
                 }
             }
-            assert!(rows > 100, "{world:?} {ways:?}: {rows}");
+            assert!(rows > 30, "{world:?} {ways:?}: {rows}");
         }
+    }
+}
+
+#[test]
+fn far_away_they_are_too() {
+    let mut rng = SmallRng::seed_from_u64(28);
+    for world in FAR {
+        let mut rows = 0;
+        for ways in [Ways::Straight, Ways::Any] {
+            let scene = scene(&mut rng, world, 4, false);
+            let mut both = Both::new(&engine(), &scene);
+            moved(&mut both, &steps(&mut rng, &scene, world, ways));
+            for query in [Query::continuous(), Query::near(0.1 * world.0)] {
+                rows += same(&mut both, query).unwrap_or_else(|error| panic!("{world:?}: {error}"));
+            }
+        }
+        assert!(rows > 0, "{world:?}");
     }
 }
 
@@ -120,18 +138,19 @@ fn steps_are_those_of_placed_vertices() {
 fn queries_in_between_change_nothing() {
     let mut rng = SmallRng::seed_from_u64(22);
     let world = WORLDS[0];
-    let scene = scene(&mut rng, world, 24, false);
+    let scene = scene(&mut rng, world, 8, false);
     let mut both = Both::new(&engine(), &scene);
     for frame in 0..3 {
         let all = steps(&mut rng, &scene, world, Ways::Any);
         moved(&mut both, &all[frame..]);
-        for query in [query(), Query::continuous(), Query::distance(), Query::near(0.1)] {
-            let found = both.own.query(&query).expect("an answer").hash();
-            let expected = both.judge.query(&query).expect("an answer").hash();
-            assert_eq!(found, expected, "{frame} {query:?}");
-        }
+        same(&mut both, Query::discrete()).expect("the same");
         same(&mut both, Query::continuous()).expect("the same");
-        same(&mut both, Query::earliest()).expect("the same");
+        let [found, expected] =
+            [&mut both.own, &mut both.judge].map(|detector| detector.query(&Query::distance()));
+        assert_eq!(found.expect("an answer").hash(), expected.expect("an answer").hash(), "{frame}");
+        for query in [Query::near(0.1), Query::earliest(), Query::continuous()] {
+            same(&mut both, query).unwrap_or_else(|error| panic!("{frame}: {error}"));
+        }
     }
     moved(&mut both, &[]);
     same(&mut both, Query::continuous()).expect("the same at rest");
@@ -141,13 +160,13 @@ fn queries_in_between_change_nothing() {
 fn geometry_is_that_of_placed_vertices() {
     let mut rng = SmallRng::seed_from_u64(23);
     for ways in [Ways::Straight, Ways::Any] {
-        let scene = scene(&mut rng, WORLDS[1], 24, false);
+        let scene = scene(&mut rng, WORLDS[1], 12, false);
         let mut both = Both::new(&engine(), &scene);
         moved(&mut both, &steps(&mut rng, &scene, WORLDS[1], ways));
         for query in [Query::continuous(), Query::near(0.1)] {
             let found = both.own.query(&query).expect("an answer");
             let expected = both.judge.query(&query.with_broad_phase(BroadPhase::Tiles)).expect("an answer");
-            assert!(found.len() > 20, "{}", found.len());
+            assert!(found.len() > 5, "{}", found.len());
             let own = both.own.geometry(&found).expect("geometry");
             assert_eq!(own, both.judge.geometry(&expected).expect("geometry"), "{query:?}");
         }
@@ -159,11 +178,11 @@ fn any_schedule_finds_them() {
     let world = WORLDS[0];
     for order in ORDERS {
         let mut rng = SmallRng::seed_from_u64(24);
-        let scene = scene(&mut rng, world, 12, false);
+        let scene = scene(&mut rng, world, 8, false);
         let emulator = Emulator::new(Mode::Sanitizer(order), None).expect("threads");
         let mut both = Both::new(&Device::emulator(emulator), &scene);
         moved(&mut both, &steps(&mut rng, &scene, world, Ways::Any));
-        for query in [Query::continuous(), Query::earliest(), Query::near(0.1)] {
+        for query in [Query::continuous(), Query::earliest(), Query::near(1.0)] {
             let rows = same(&mut both, query).unwrap_or_else(|error| panic!("{order:?}: {error}"));
             assert!(rows > 0, "{order:?} {query:?}");
         }
