@@ -24,7 +24,7 @@ pub struct Engine {
     pub has_ends: bool,
     /// Whether it holds vertices in the scene: from the first query on that reads them.
     pub has_vertices: bool,
-    /// Whether discrete queries read bodies as instances, as long as there is this pipeline.
+    /// Whether queries read bodies as instances if they can, as long as there is this pipeline.
     pub has_instances: bool,
     /// Whether a submission was prepared: these read vertices.
     pub submits: bool,

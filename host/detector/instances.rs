@@ -1,4 +1,4 @@
-//! Chooses how discrete queries read rigid and fixed bodies: as instances of their meshes, or by
+//! Chooses how queries read rigid and fixed bodies: as instances of their meshes, or by
 //! vertices in the scene.
 
 use super::Detector;

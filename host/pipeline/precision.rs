@@ -84,6 +84,9 @@ pub trait Precision: Real + Send {
     /// rigid body is.
     fn in_f64(frames: Frames<Self>, rest: Span<Point<Self>>) -> (Frames<f64>, Span<Point<f64>>);
 
+    /// Returns positions and points of rigid bodies from f64; none in f32.
+    fn of_f64(frames: Frames<f64>, rest: Span<Point<f64>>) -> (Frames<Self>, Span<Point<Self>>);
+
     /// Returns points of this precision as positions.
     fn positions(points: Vec<Vec3<Self>>) -> Positions;
 }
@@ -132,6 +135,10 @@ impl Precision for f32 {
     }
 
     fn in_f64(_: Frames<f32>, _: Span<Point<f32>>) -> (Frames<f64>, Span<Point<f64>>) {
+        (Frames { still: Span::EMPTY, moving: Span::EMPTY, turns: Span::EMPTY }, Span::EMPTY)
+    }
+
+    fn of_f64(_: Frames<f64>, _: Span<Point<f64>>) -> (Frames<f32>, Span<Point<f32>>) {
         (Frames { still: Span::EMPTY, moving: Span::EMPTY, turns: Span::EMPTY }, Span::EMPTY)
     }
 
@@ -184,6 +191,10 @@ impl Precision for f64 {
     }
 
     fn in_f64(frames: Frames<f64>, rest: Span<Point<f64>>) -> (Frames<f64>, Span<Point<f64>>) {
+        (frames, rest)
+    }
+
+    fn of_f64(frames: Frames<f64>, rest: Span<Point<f64>>) -> (Frames<f64>, Span<Point<f64>>) {
         (frames, rest)
     }
 

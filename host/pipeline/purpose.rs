@@ -16,6 +16,10 @@ pub const POSES: &str = "poses of rigid bodies";
 pub const MESHES: &str = "meshes in their own frames, once each";
 /// Bodies as instances of meshes.
 pub const INSTANCES: &str = "mesh and place of each body";
+/// Vertices of candidates of instances.
+pub const CANDIDATE_VERTICES: &str = "positions of vertices of candidates";
+/// The frames that placed them.
+pub const PLACED: &str = "last frame of each vertex of candidates";
 /// Lists that a refit of meshes of deformable bodies reads.
 pub const REFITTED: &str = "vertices, triangles and nodes of meshes that deform";
 /// Boxes of bodies, and of groups of bodies.

@@ -186,7 +186,7 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
     }
 
     fn whereabouts(&self) -> Result<Whereabouts, Error> {
-        self.scene.vertices.whereabouts()
+        self.scene.whereabouts(self.queries.first().map(|query| &*query.layout))
     }
 
     fn ready(&mut self, query: usize, bodies: &[Body]) -> Result<bool, Error> {
@@ -269,7 +269,7 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
     fn fingerprints(&self, query: usize) -> Result<Vec<(&'static str, u64)>, Error> {
         let own = &self.queries[query];
         let mut prints = self.broad(query).fingerprints()?;
-        if own.is_of_instances {
+        if own.is_of_instances && !own.query.kind().is_of_features() {
             // Candidates name pairs of tiles by their places, which depend on the schedule.
             return Ok(prints);
         }
@@ -283,10 +283,10 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
 
     fn check(&self, query: usize) -> Result<(), Error> {
         let own = &self.queries[query];
-        if let Some(instances) = self.scene.instances.as_ref().filter(|_| own.is_of_instances) {
-            let positions = instances.positions(&own.layout)?;
-            let positions = positions.into_iter().map(|point| point.map(|x| R::of(x))).collect();
-            let positions = Checked::new(vec![positions], Vec::new());
+        if own.is_of_instances {
+            let has_ends = !own.is_at_rest();
+            let ends = (0..1 + usize::from(has_ends)).map(|end| self.scene.all_positions(own, end));
+            let positions = Checked::new(ends.collect::<Result<_, _>>()?, Vec::new());
             return self.broad(query).check(&own.layout, &own.layout.faces, &positions);
         }
         let faces = self.scene.faces.read(self.scene.faces.len())?;

@@ -222,17 +222,25 @@ impl Query {
         shape
     }
 
-    /// Returns whether it can read rigid and fixed bodies as instances of their meshes: a discrete
-    /// query by exact signs, without a choice of how candidates are found. A query of pairs of bodies
+    /// Returns whether it can read rigid and fixed bodies as instances of their meshes: without a
+    /// choice of how candidates are found, a discrete query by exact signs, a near query, and one in
+    /// motion by a certified solver beyond f32 and without a limit of work. A query of pairs of bodies
     /// always does.
     pub(crate) fn may_read_instances(&self) -> bool {
         if self.kind().is_of_bodies() {
             return true;
         }
-        let Query::Discrete(Discrete { test: TriangleTest::Exact { .. }, search, .. }) = self else {
-            return false;
+        let can = match self {
+            Query::Discrete(discrete) => matches!(discrete.test, TriangleTest::Exact { .. }),
+            Query::Near(_) => true,
+            // Others leave pairs undecided farther apart than the tolerance.
+            Query::Continuous(_) | Query::Earliest(_) => self.certified().is_some_and(|certified| {
+                certified.precision != CertifiedPrecision::F32 && certified.max_iterations.is_none()
+            }),
+            Query::Distance(_) | Query::BodyPairs(_) | Query::BodyDistances(_) => false,
         };
-        *search == Search { rebuild: search.rebuild, ..Search::default() }
+        let search = self.search();
+        can && search == Search { rebuild: search.rebuild, ..Search::default() }
     }
 
     /// Returns the rows of its answer; `None` if the answer is one row at most.

@@ -37,7 +37,9 @@ use crate::prim::isolate::ladder::SLICES;
 use crate::queue::worker;
 use crate::sort;
 use crate::stage::construct::{cuts, graft, morton, tile_filters, tree, treelet};
-use crate::stage::fit::{bodies as fit_of_bodies, leaves as fit_of_leaves, rims, tiles as fit_of_tiles};
+use crate::stage::fit::{
+    bodies as fit_of_bodies, leaves as fit_of_leaves, moving_bodies, rims, tiles as fit_of_tiles,
+};
 use crate::stage::narrow::discrete::{Start, Still};
 use crate::stage::narrow::placed::Placed;
 use crate::stage::narrow::{
@@ -46,7 +48,7 @@ use crate::stage::narrow::{
 };
 use crate::stage::refit::{levels, meshes as refit_of_meshes, tiles as refit_of_tiles, treelets};
 use crate::stage::traverse::instances::{
-    nodes, relations, touching, triangles as instance_triangles, within,
+    nodes, relations, touching, triangles as instance_triangles, vertices, within,
 };
 use crate::stage::traverse::{
     front, left_out, nearest as nearest_first, per_leaf, queue, steal, tile_triangles, tiles as tile_pairs,
@@ -135,6 +137,11 @@ kernels! {
     traverse_relations: relations::relations, [RelationsArgs], NARROW, 0;
     traverse_nodes: nodes::nodes, [NodesArgs], nodes::LANES, nodes::SHARED, exact = true;
     traverse_instances: instance_triangles::candidates, [InstancesArgs], instance_triangles::LANES, instance_triangles::SHARED, exact = true;
+    fit_moving_bodies: moving_bodies::bodies, [MovingBodiesArgs], fit_of_tiles::LANES, fit_of_tiles::shared_bytes::<bv::FrameBox>(), exact = true;
+    traverse_moving_relations: relations::moving_relations, [MovingRelationsArgs], NARROW, 0;
+    traverse_moving_nodes: nodes::moving_nodes, [MovingNodesArgs], nodes::LANES, nodes::SHARED, exact = true;
+    traverse_moving_instances: instance_triangles::moving_candidates, [MovingInstancesArgs], instance_triangles::LANES, instance_triangles::SHARED_MOVING, exact = true;
+    traverse_vertices: vertices::vertices, [CandidateVerticesArgs], WIDE, 0;
     traverse_touching: touching::touching, [TouchingArgs], instance_triangles::LANES, touching::SHARED, exact = true;
     traverse_relations_within: relations::relations_within, [RelationsWithinArgs], NARROW, 0;
     traverse_nodes_within: nodes::nodes_within, [NodesWithinArgs], nodes::LANES, nodes::SHARED_WITHIN, exact = true;

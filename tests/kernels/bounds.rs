@@ -16,6 +16,7 @@ mod inclusion;
 mod isolate;
 mod list;
 mod merged;
+mod motion;
 mod moving;
 mod near;
 mod orient;

@@ -1,8 +1,9 @@
-//! Instances: discrete queries of rigid scenes that place no vertex in the scene. The judge is the
+//! Instances: queries of rigid scenes that place no vertex in the scene, or only those of candidates. The judge is the
 //! path by tiles, which places all: both must list the same pairs.
 
 mod alike;
 mod lists;
+mod motion;
 mod touching;
 mod ways;
 

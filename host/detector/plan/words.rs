@@ -17,7 +17,7 @@ pub const STAGES: [(&str, &str); 9] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 87] = [
+const KERNELS: [(&str, &str); 92] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
     ("place_turns", "rotation vectors and paths of bodies that turn"),
     ("place", "poses applied, uploads put in place, other bodies at rest"),
@@ -33,6 +33,7 @@ const KERNELS: [(&str, &str); 87] = [
     ("construct_graft", "the fixed tree after the other, once"),
     ("sort_pass", "a pass of the radix sort"),
     ("fit_bodies", "a place and a box for each body, and boxes of groups"),
+    ("fit_moving_bodies", "places and a box for each body around its step, and boxes of groups"),
     ("fit_tiles", "a volume for each triangle, tile, and 16 tiles"),
     ("fit_rims", "edges opposite to hubs: a volume for each tile and node"),
     ("fit_groups", "nodes of few leaves, from their points"),
@@ -54,6 +55,10 @@ const KERNELS: [(&str, &str); 87] = [
     ("traverse_relations", "bodies in the frames of others, if their meshes may meet"),
     ("traverse_nodes", "pairs of nodes of two meshes, a level lower"),
     ("traverse_instances", "triangles of pairs of tiles of two bodies, by boxes and planes"),
+    ("traverse_moving_relations", "the same around a step, if their meshes may meet in it"),
+    ("traverse_moving_nodes", "pairs of nodes around a step, a level lower"),
+    ("traverse_moving_instances", "triangles of pairs of tiles around a step, by boxes and planes"),
+    ("traverse_vertices", "vertices of candidates, placed once each"),
     ("traverse_leaves", "a walk for each leaf"),
     ("traverse_units", "work units given up by long walks"),
     ("traverse_sample", "the nearest of a few leaves, for a bound"),

@@ -278,7 +278,21 @@ pub fn instance_phase<R: Precision>(
     device: &Device,
     layout: &Layout,
 ) -> Result<Box<dyn CandidateSearch<R>>, Error> {
-    Ok(Box::new(instances::BodyGroups::new(device, layout)?))
+    Ok(Box::new(<instances::BodyGroups>::new(device, layout)?))
+}
+
+/// Returns the broad phase of a query of features over bodies as instances, at rest or in motion. At
+/// least one body moves. Boxes of bodies grow by `margin`.
+///
+/// # Errors
+/// Device errors.
+pub fn motion_phase<R: Precision>(
+    device: &Device,
+    layout: &Layout,
+    is_at_rest: bool,
+    margin: f32,
+) -> Result<Box<dyn CandidateSearch<R>>, Error> {
+    Ok(Box::new(instances::MotionSearch::new(device, layout, is_at_rest, margin)?))
 }
 
 /// Returns the broad phase of a query of pairs of bodies. At least one body moves. Boxes of bodies

@@ -3,6 +3,9 @@
 
 mod deformed;
 mod mesh;
+mod motion;
+
+pub use motion::InMotion;
 
 use super::layout::Layout;
 use super::purpose;
@@ -33,6 +36,8 @@ pub struct Instances {
     tiles: u32,
     /// Meshes that are refitted; `None` without a deformable body.
     deformed: Option<Deformed>,
+    /// Motions, from the first query of features on.
+    motion: Option<InMotion>,
     /// Most levels of nodes above the tiles of a mesh.
     pub levels: u32,
     /// Poses on the host, the centre of each body's mesh, and its first vertex among all meshes'.
@@ -102,6 +107,7 @@ impl Instances {
             poses: device.of(purpose::POSES).upload(&placed)?,
             tiles: all.tiles,
             deformed: Deformed::new(device, bodies, layout, (&all, &records))?,
+            motion: None,
             levels: all.levels,
             centres: records.iter().map(|record| centre(record).unwrap_or_default()).collect(),
             first_vertices: records.iter().map(|record| first_vertex(record).unwrap_or_default()).collect(),
@@ -126,10 +132,35 @@ impl Instances {
     ///
     /// # Errors
     /// Device errors.
-    pub fn put(&mut self, bodies: &[Body]) -> Result<(), Error> {
+    pub fn put(&mut self, device: &Device, bodies: &[Body]) -> Result<(), Error> {
         self.placed.clear();
         self.placed.extend(bodies.iter().map(pose));
-        self.poses.write(&self.placed)
+        self.poses.write(&self.placed)?;
+        self.motion.as_mut().map_or(Ok(()), |motion| motion.put(device, bodies))
+    }
+
+    /// Readies motions for a query of features, at rest or in motion.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn ready_motion(
+        &mut self,
+        device: &Device,
+        (bodies, layout): (&[Body], &Layout),
+        is_at_rest: bool,
+    ) -> Result<(), Error> {
+        let motion = match &mut self.motion {
+            Some(motion) => motion,
+            none => none.insert(InMotion::new(device, bodies, layout, &self.first_vertices)?),
+        };
+        motion.reserve(device, is_at_rest)?;
+        // Those of a new one are none.
+        if motion.differ(bodies) { motion.put(device, bodies) } else { Ok(()) }
+    }
+
+    /// Returns motions; `None` before a query of features.
+    pub fn motion(&self) -> Option<&InMotion> {
+        self.motion.as_ref()
     }
 
     /// Returns whether bodies have other poses than those on the device. By bytes: the sign of a zero
@@ -167,15 +198,19 @@ impl Instances {
         rigid::moved(&rigid::rows(pose.rotation), &pose.translation, Vec3(self.centres[body])).0
     }
 
-    /// Returns the placed vertices of all bodies, from device memory: for a check.
+    /// Returns the placed vertices of all bodies at an end of the step. Bodies without a motion have
+    /// one end.
     ///
     /// # Errors
     /// Device errors.
-    pub fn positions(&self, layout: &Layout) -> Result<Vec<Vec3<f64>>, Error> {
-        let (vertices, poses) =
-            (self.vertices.read(self.vertices.len())?, self.poses.read(self.poses.len())?);
+    pub fn positions(&self, layout: &Layout, end: usize) -> Result<Vec<Vec3<f64>>, Error> {
+        let vertices = self.vertices.read(self.vertices.len())?;
+        let poses: Vec<&PoseRecord> = match &self.motion {
+            Some(motion) => motion.placed(end).collect(),
+            None => self.placed.iter().collect(),
+        };
         let mut all = Vec::new();
-        for (body, pose) in poses.iter().enumerate() {
+        for (body, pose) in poses.into_iter().enumerate() {
             let count = (layout.starts[body + 1].vertex - layout.starts[body].vertex) as usize;
             let first = self.first_vertices[body] as usize;
             let rows = rigid::rows(pose.rotation);

@@ -1,7 +1,7 @@
 //! Place: the vertices of all bodies on the device, at the positions of each frame.
 
 mod device_arrays;
-mod turns;
+pub mod turns;
 
 pub use device_arrays::{Seen, Whereabouts};
 

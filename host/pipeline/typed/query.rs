@@ -155,11 +155,11 @@ impl<R: Precision> QueryMemory<R> {
             self.seen = Some(scene.placings);
         }
         if self.is_of_instances {
-            scene.ready_instances(bodies, &self.layout)?;
+            scene.ready_instances(bodies, (&self.layout, self.query.kind()))?;
         } else {
             scene.ready(self.is_at_rest())?;
         }
-        let margin = self.margin(scene.vertices.turns());
+        let margin = self.margin(self.is_of_instances || scene.vertices.turns());
         let broad = &mut scene.broads[self.broad];
         let grows = broad.phase.set_margin(margin);
         broad.is_built &= !grows;
@@ -167,7 +167,8 @@ impl<R: Precision> QueryMemory<R> {
     }
 
     /// Returns the margin of the volumes. A pair that turns may stay undecided within half a
-    /// tolerance, and is then a candidate of every volume.
+    /// tolerance, and is then a candidate of every volume. Boxes of instances are of the meshes' frames:
+    /// any pair that may stay undecided is to be a candidate.
     pub fn margin(&self, turns: bool) -> f32 {
         let tolerance = self.query.certified().and_then(|certified| certified.tolerance);
         growth(self.query.listed_within() + tolerance.filter(|_| turns).unwrap_or(0.0))
@@ -226,11 +227,12 @@ impl<R: Precision> QueryMemory<R> {
                     self.traverse(scene, self.narrow.bound().map_or(Which::All, Which::Before))?;
                 }
                 Step::Narrow(..) | Step::Order => {
+                    let (frames, rest, faces) = scene.positions_of(self);
                     let given = NarrowContext {
                         device: &scene.device,
-                        frames: scene.vertices.frames(self.query.kind().is_at_rest()),
-                        rest: scene.vertices.rest(),
-                        faces: scene.faces.span(),
+                        frames,
+                        rest,
+                        faces,
                         pairs: scene.candidates(self.is_of_instances).output(self.counters.counters()),
                         bodies: self.records.span(),
                         counters: self.counters.counters(),

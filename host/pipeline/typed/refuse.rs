@@ -52,7 +52,7 @@ impl<R: Precision> QueryMemory<R> {
         match step {
             Step::Traverse => {
                 let positions = || {
-                    let at = scene.vertices.positions(self.is_at_rest())?.swap_remove(0);
+                    let at = scene.all_positions(self, 0)?;
                     let wide = |point: &nearmiss_kernels::math::Vec3<R>| {
                         let point = point.wide();
                         [point[0], point[1], point[2]]

@@ -5,23 +5,26 @@ use super::Broad;
 use super::query::QueryMemory;
 use crate::device::{Buffer, Device, Event};
 use crate::error::Error;
+use crate::mesh;
 use crate::pipeline::broad::{
-    BroadContext, CandidateSearch, Candidates, Which, broad_phase, growth, instance_phase, pair_phase,
+    BroadContext, CandidateSearch, Candidates, Which, broad_phase, growth, instance_phase, motion_phase,
+    pair_phase,
 };
 use crate::pipeline::instances::Instances;
 use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::narrow::Features;
-use crate::pipeline::placing::{Moved, Placing};
+use crate::pipeline::placing::{Moved, Placing, Whereabouts};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::purpose;
 use crate::pipeline::{Layout, QueryParts, SceneParts};
 use crate::query::{self, BoundingVolume, Query, QueryKind};
 use crate::scene::Body;
 use nearmiss_kernels::abi::{
-    BodyRecord, Counters, FilterArgs, LeftOutArgs, Pair, TraverseFlags, counter,
+    BodyRecord, Counters, FilterArgs, LeftOutArgs, Pair, Point, Positions, Span, TraverseFlags, counter,
 };
 use nearmiss_kernels::entry::traverse_left_out;
+use nearmiss_kernels::math::Vec3;
 
 /// The choices that two queries must have in common to share a broad phase.
 #[derive(Clone, Copy, PartialEq)]
@@ -32,6 +35,8 @@ pub enum BroadKey {
     Trees(Query),
     /// Groups of bodies, which are instances of meshes.
     Instances,
+    /// The same around a step, or at rest: a query of features.
+    Motion { is_at_rest: bool },
     /// The same with words of their relations: a query of pairs of bodies.
     Bodies(QueryKind),
 }
@@ -44,7 +49,9 @@ impl BroadKey {
             return BroadKey::Bodies(shape.kind());
         }
         if parts.is_of_instances {
-            return BroadKey::Instances;
+            let is_at_rest = shape.kind().is_at_rest();
+            let is_of_features = shape.kind().is_of_features();
+            return if is_of_features { BroadKey::Motion { is_at_rest } } else { BroadKey::Instances };
         }
         if shape.broad_phase_on(is_gpu) == query::BroadPhase::Tree {
             return BroadKey::Trees(*shape);
@@ -177,6 +184,7 @@ impl<R: Precision> SceneMemory<R> {
         let margin = growth(query.listed_within());
         let phase = match key {
             BroadKey::Instances => instance_phase(&self.device, layout)?,
+            BroadKey::Motion { is_at_rest } => motion_phase(&self.device, layout, is_at_rest, margin)?,
             BroadKey::Bodies(_) => pair_phase(&self.device, layout, query, margin)?,
             BroadKey::Tiles(..) | BroadKey::Trees(_) => broad_phase(&self.device, layout, query, margin)?,
         };
@@ -192,24 +200,32 @@ impl<R: Precision> SceneMemory<R> {
         if self.has_vertices {
             self.vertices.put(&self.device, bodies, moved)?;
         }
-        self.instances.as_mut().map_or(Ok(()), |instances| instances.put(bodies))
+        let device = &self.device;
+        self.instances.as_mut().map_or(Ok(()), |instances| instances.put(device, bodies))
     }
 
     /// Readies meshes and poses for a query of instances.
     ///
     /// # Errors
     /// Device errors.
-    pub fn ready_instances(&mut self, bodies: &[Body], layout: &Layout) -> Result<(), Error> {
+    pub fn ready_instances(
+        &mut self,
+        bodies: &[Body],
+        (layout, kind): (&Layout, QueryKind),
+    ) -> Result<(), Error> {
         let instances = match &mut self.instances {
             Some(instances) => {
                 // The host may have poses of a download, which no update named.
                 if instances.differ(bodies) {
-                    instances.put(bodies)?;
+                    instances.put(&self.device, bodies)?;
                 }
                 instances
             }
             none => none.insert(Instances::new(&self.device, bodies, layout)?),
         };
+        if kind.is_of_features() {
+            instances.ready_motion(&self.device, (bodies, layout), kind.is_at_rest())?;
+        }
         let deform = instances.deform();
         // Meshes that deform are refitted to vertices in the scene.
         if deform { self.ready(true) } else { Ok(()) }
@@ -226,6 +242,47 @@ impl<R: Precision> SceneMemory<R> {
             self.placing.push([start, self.device.event()?]);
         }
         Ok(())
+    }
+
+    /// Returns positions, vertices of rigid bodies without a pose, and faces, as a query's narrow phase
+    /// reads them.
+    pub fn positions_of(&self, query: &QueryMemory<R>) -> (Positions<R>, Span<Point<R>>, Span<[u32; 3]>) {
+        let is_at_rest = query.is_at_rest();
+        let own = self.instances.as_ref().filter(|_| query.is_of_instances);
+        match own.and_then(|own| own.motion().map(|motion| (own, motion))) {
+            Some((own, motion)) => {
+                let (frames, rest) = R::of_f64(motion.vertices(is_at_rest), own.tables().vertices);
+                (frames, rest, motion.faces())
+            }
+            None => (self.vertices.frames(is_at_rest), self.vertices.rest(), self.faces.span()),
+        }
+    }
+
+    /// Returns all positions at an end of the step, as a query reads them.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn all_positions(&self, query: &QueryMemory<R>, end: usize) -> Result<Vec<Vec3<R>>, Error> {
+        match self.instances.as_ref().filter(|_| query.is_of_instances) {
+            Some(own) => {
+                let all = own.positions(&query.layout, end)?;
+                Ok(all.into_iter().map(|point| point.map(|x| R::of(x))).collect())
+            }
+            None => Ok(self.vertices.positions(query.is_at_rest())?.swap_remove(end)),
+        }
+    }
+
+    /// Returns the positions of all bodies, of which the query of this layout may be one of instances.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn whereabouts(&self, layout: Option<&Layout>) -> Result<Whereabouts, Error> {
+        let Some((own, layout)) = self.instances.as_ref().zip(layout).filter(|_| !self.has_vertices) else {
+            return self.vertices.whereabouts();
+        };
+        let end = |end: usize| Ok::<_, Error>(own.positions(layout, end)?.into_iter().map(|p| p.0).collect());
+        let ends = vec![mesh::Positions::F64(end(0)?), mesh::Positions::F64(end(1)?)];
+        Ok(Whereabouts { looked_at: ends.len(), ends, poses: Vec::new(), seen: None })
     }
 
     /// Calls a function with the broad phase of a query and its context.

@@ -7,6 +7,7 @@ pub mod gap;
 pub mod group;
 pub mod horizon;
 pub mod leaf;
+pub mod motion;
 pub mod on_chip;
 pub mod pieces;
 pub mod placing;

@@ -4,7 +4,7 @@ use crate::exec::{Block, Lane, Shared};
 use bytemuck::Pod;
 use core::marker::PhantomData;
 
-/// Places for items of at most 64 bytes, stored in pieces of sixteen, so that neighbours are in
+/// Places for items of at most 80 bytes, stored in pieces of sixteen, so that neighbours are in
 /// different banks.
 #[derive(Clone, Copy)]
 pub struct Pieces<T> {
@@ -16,7 +16,7 @@ pub struct Pieces<T> {
 /// Bytes of a piece.
 const PIECE: usize = 16;
 /// Pieces of an item at most.
-const MOST: usize = 4;
+const MOST: usize = 5;
 
 impl<T: Pod> Pieces<T> {
     /// Pieces of an item.

@@ -1,6 +1,7 @@
 //! Triangles of instances, placed as they are read.
 
-use crate::abi::{Candidate, InstanceTables, NodePair, Pair, Relation, Span};
+use crate::abi::{Candidate, InstanceTables, NodePair, Pair, Span};
+use crate::bvh::relation::Related;
 use crate::bvh::tiles::TILE;
 use crate::exec::{Lane, OPEN, RowMap};
 use crate::math::{Vec3, rigid};
@@ -63,15 +64,15 @@ pub fn triangles_of(bodies: [u32; 2], tiles: &NodePair, places: [u32; 2]) -> [Pl
 
 /// The relation of a candidate, and its triangles.
 #[inline(always)]
-pub fn candidate<L: Lane>(
+pub fn candidate<Q: Related, L: Lane>(
     lane: &L,
-    relations: Span<Relation>,
+    relations: Span<Q>,
     tile_pairs: Span<NodePair>,
     pair: Pair,
 ) -> (u32, [PlacedTriangle; 2]) {
     let Candidate { tile_pair, places } = Candidate::of(pair);
     let tiles = lane.read(tile_pairs, tile_pair);
-    let bodies = lane.read(relations, tiles.relation).bodies;
+    let bodies = lane.read(relations, tiles.relation).bodies();
     (tiles.relation, triangles_of(bodies, &tiles, places))
 }
 

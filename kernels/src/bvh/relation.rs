@@ -33,7 +33,8 @@
 use crate::abi::{InstanceFrame, MeshRecord, Relation};
 use crate::bv::FrameBox;
 use crate::math::tolerance::{RELATIVE_FAR, RELATIVE_LIMIT, RELATIVE_SLACK};
-use crate::math::{Real, round};
+use crate::math::{Real, Vec3, round};
+use crate::prim::planes;
 use bytemuck::{Pod, Zeroable};
 
 /// A volume in the frames of both bodies.
@@ -51,6 +52,64 @@ impl Both {
     #[inline(always)]
     pub fn overlaps(&self, other: &Both) -> bool {
         self.first.overlaps(&other.first) & self.second.overlaps(&other.second)
+    }
+}
+
+/// Two bodies in each other's frames, at rest or in motion: a volume of one as the other sees it.
+pub trait Related: Pod {
+    /// Corners of a triangle of the second, in the frame of the first.
+    type Seen: Pod;
+    /// Those of a triangle of the first and of one of the second.
+    type Row: Pod;
+
+    /// The bodies, the smaller first.
+    fn bodies(&self) -> [u32; 2];
+    /// Error of everything of one in the frame of the other. Length.
+    fn slack(&self) -> f32;
+    /// A volume of the first in both frames.
+    fn first_in_both(&self, volume: &FrameBox) -> Both;
+    /// A volume of the second in both frames.
+    fn second_in_both(&self, volume: &FrameBox) -> Both;
+    /// A triangle of the second in the frame of the first, and around it, its errors included.
+    fn seen(&self, corners: &[[f32; 3]; 3]) -> (Self::Seen, FrameBox);
+    /// Both triangles in the frame of the first.
+    fn row(p: [[f32; 3]; 3], q: Self::Seen) -> Self::Row;
+    /// Whether a plane of the two certainly parts them, in the whole step.
+    fn are_apart(row: Self::Row, slack: f32) -> bool;
+}
+
+impl Related for Relation {
+    type Seen = [[f32; 3]; 3];
+    type Row = [[[f32; 3]; 3]; 2];
+
+    #[inline(always)]
+    fn bodies(&self) -> [u32; 2] {
+        self.bodies
+    }
+    #[inline(always)]
+    fn slack(&self) -> f32 {
+        self.slack
+    }
+    #[inline(always)]
+    fn first_in_both(&self, volume: &FrameBox) -> Both {
+        self.of_first(volume)
+    }
+    #[inline(always)]
+    fn second_in_both(&self, volume: &FrameBox) -> Both {
+        self.of_second(volume)
+    }
+    #[inline(always)]
+    fn seen(&self, corners: &[[f32; 3]; 3]) -> (Self::Seen, FrameBox) {
+        self.triangle_to_first(corners)
+    }
+    #[inline(always)]
+    fn row(p: [[f32; 3]; 3], q: Self::Seen) -> Self::Row {
+        [p, q]
+    }
+    #[inline(always)]
+    fn are_apart([p, q]: Self::Row, slack: f32) -> bool {
+        let of = |t: [[f32; 3]; 3]| [Vec3(t[0]), Vec3(t[1]), Vec3(t[2])];
+        planes::apart(&of(p), &of(q), slack)
     }
 }
 

@@ -5,7 +5,7 @@ use nearmiss::device::emulator::{Emulator, Mode};
 use support::ORDERS;
 
 /// A size, a place, and the range of bodies about it, in sizes.
-type World = (f64, [f64; 3], f64);
+pub type World = (f64, [f64; 3], f64);
 
 /// Meshes of many sizes: of one triangle, of triangles without area, of one tile and of many.
 fn meshes(rng: &mut SmallRng, size: f64) -> Vec<Mesh> {
@@ -24,7 +24,7 @@ fn meshes(rng: &mut SmallRng, size: f64) -> Vec<Mesh> {
 }
 
 /// Bodies about a place, fixed ones among them, in environments and groups, some pairs left out.
-fn scene(rng: &mut SmallRng, (size, place, range): World, count: usize, filters: bool) -> Scene {
+pub fn scene(rng: &mut SmallRng, (size, place, range): World, count: usize, filters: bool) -> Scene {
     let meshes = meshes(rng, size);
     let mut scene = Scene::new();
     for i in 0..count {
@@ -66,14 +66,14 @@ fn poses(rng: &mut SmallRng, scene: &Scene, (size, place, range): World) -> Vec<
 }
 
 /// Sizes, and places from the origin to a million.
-const WORLDS: [World; 4] = [
+pub const WORLDS: [World; 4] = [
     (1.0, [0.0; 3], 4.0),
     (1.0, [1e6, -1e6, 1e6], 4.0),
     (1e-9, [0.0; 3], 4.0),
     (1e12, [1e13, 0.0, 0.0], 4.0),
 ];
 /// Places so far away that boxes in f32 are all one: few bodies, or the judge takes minutes.
-const FAR: [World; 4] = [
+pub const FAR: [World; 4] = [
     (1e-3, [456_789.123, 5_432_109.876, 312.25], 1.0),
     (1.0, [1e15, 1e15, -1e15], 1.0),
     (1e40, [0.0, 1e41, 0.0], 1.0),

@@ -99,7 +99,8 @@ impl PairSearch {
     ) -> Result<(), Error> {
         let device = given.device;
         let descent = &mut self.bodies.descent;
-        descent.run(given, args, |args| striding::<entry::traverse_nodes>(device, args))?;
+        let (relations, pairs) = ((args.relations, args.counters), self.bodies.relations.capacity());
+        descent.run(given, relations, pairs, |args| striding::<entry::traverse_nodes>(device, args))?;
         let of = descent.triangles(args, left);
         striding::<entry::traverse_touching>(device, &TouchingArgs { of, words: self.words(), what, pad: 0 })
     }
@@ -112,11 +113,12 @@ impl PairSearch {
         candidates: &Candidates,
     ) -> Result<(), Error> {
         let (device, words) = (given.device, self.words());
+        let room = self.bodies.relations.capacity();
         let Some(Close { descent, .. }) = &mut self.close else { return Err(without_lists()) };
-        descent.run(given, of, |args| {
+        descent.run(given, (of.relations, of.counters), room, |args| {
             let args = NodesWithinArgs { of: *args, words };
             let of_pairs = args.of.pairs.room() as usize;
-            let room = if of_pairs == 0 { of.relations.room() as usize } else { of_pairs };
+            let room = if of_pairs == 0 { room } else { of_pairs };
             launch::striding::<entry::traverse_bounds>(device, room, &args)?;
             striding::<entry::traverse_nodes_within>(device, &args)
         })?;

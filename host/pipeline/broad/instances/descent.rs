@@ -7,7 +7,8 @@ use crate::pipeline::broad::BroadContext;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::precision::Precision;
 use nearmiss_kernels::abi::{
-    Counter, InstancesArgs, MESH_LEVELS, NodePair, NodesArgs, Output, Pair, RelationsArgs, counter,
+    Counter, Counters, InstancesArgs, MESH_LEVELS, NodePair, NodesArgs, Output, Pair, Relation,
+    RelationsArgs, counter,
 };
 
 /// The counters of a descent: pairs of nodes after each level, and pairs of tiles.
@@ -35,19 +36,21 @@ impl Descent {
         Ok(Descent { counted, node_pairs: Vec::new(), tile_pairs })
     }
 
-    /// Goes down the meshes of related bodies to pairs of tiles: `launch` a level.
+    /// Goes down the meshes of related bodies to pairs of tiles: `launch` a level, with these relations.
+    /// New lists have this room.
     ///
     /// # Errors
     /// Device errors.
     pub fn run<R: Precision>(
         &mut self,
         given: &BroadContext<R>,
-        of: &RelationsArgs,
+        (relations, counters): (Output<Relation>, Counters),
+        room: usize,
         launch: impl Fn(&NodesArgs) -> Result<(), Error>,
     ) -> Result<(), Error> {
-        let RelationsArgs { tables, relations, counters, .. } = *of;
+        let instances = given.instances.ok_or_else(without_instances)?;
+        let (tables, levels) = (instances.tables(), instances.levels.max(1));
         let tile_pairs = self.tile_pairs.output(counters);
-        let levels = given.instances.ok_or_else(without_instances)?.levels.max(1);
         debug_assert!(levels <= MESH_LEVELS);
         let mut pairs = Output::EMPTY;
         for level in 0..levels {
@@ -56,7 +59,7 @@ impl Descent {
             let next = if is_last {
                 Output::EMPTY
             } else {
-                self.after_level(given.device, level as usize, relations.room() as usize)?.output(counters)
+                self.after_level(given.device, level as usize, room)?.output(counters)
             };
             launch(&NodesArgs { tables, relations, pairs, next, tile_pairs, counters })?;
             pairs = next;

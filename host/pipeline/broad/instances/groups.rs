@@ -38,6 +38,9 @@ pub struct Groups {
     has_fixed: bool,
     /// Growth of each box of a part. Length.
     margins: [f32; 2],
+    /// Poses of a body whose boxes are around a step, or around the one at rest; `None` without a
+    /// motion.
+    poses: Option<u32>,
 }
 
 impl Groups {
@@ -69,7 +72,13 @@ impl Groups {
             whose: of_filters.upload(&whose)?,
             has_fixed: false,
             margins: [0.0; 2],
+            poses: None,
         })
+    }
+
+    /// Makes boxes go around a step, or around this many poses of it.
+    pub fn read_poses(&mut self, poses: u32) {
+        self.poses = Some(poses);
     }
 
     /// Sets the growth of each box. Returns whether boxes of fixed bodies must be fitted again.
@@ -155,7 +164,12 @@ impl Groups {
             margin: self.margins[part],
             pad: 0,
         };
-        launch::blocks::<entry::fit_bodies>(device, above.count, &args)
+        match self.poses.zip(instances.motion()) {
+            Some((poses, motion)) => {
+                launch::blocks::<entry::fit_moving_bodies>(device, above.count, &motion.fit_args(args, poses))
+            }
+            None => launch::blocks::<entry::fit_bodies>(device, above.count, &args),
+        }
     }
 
     /// Refits the nodes above groups of moving bodies, from the third level on.

@@ -6,8 +6,10 @@
 mod bodies;
 mod descent;
 mod groups;
+mod motion;
 
 pub use bodies::PairSearch;
+pub use motion::MotionSearch;
 
 use super::tiles::walk;
 use super::{BroadContext, CandidateSearch, Candidates, Placeable, broken};
@@ -19,7 +21,7 @@ use crate::pipeline::launch;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::precision::Precision;
-use bytemuck::Zeroable;
+use bytemuck::{Pod, Zeroable};
 use descent::Descent;
 use groups::Groups;
 use nearmiss_kernels::abi::{
@@ -46,11 +48,11 @@ const TURNS: u32 = 3;
 const STALE: u64 = 64;
 
 /// Bodies in groups, and the lists down to candidates.
-pub struct BodyGroups {
+pub struct BodyGroups<Q: Pod = Relation> {
     groups: Groups,
     group_pairs: List<Pair>,
     body_pairs: List<Pair>,
-    relations: List<Relation>,
+    relations: List<Q>,
     descent: Descent,
     /// Meshes and bodies of the last traversal.
     tables: Option<InstanceTables>,
@@ -59,7 +61,7 @@ pub struct BodyGroups {
     is_stale: bool,
 }
 
-impl BodyGroups {
+impl<Q: Pod> BodyGroups<Q> {
     /// Allocates groups over the bodies of a layout. At least one body moves.
     ///
     /// # Errors
@@ -129,6 +131,67 @@ impl BodyGroups {
         Ok(pairs)
     }
 
+    fn all_lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
+        let mut all: Vec<&mut dyn GrowableOutput> =
+            vec![&mut self.group_pairs, &mut self.body_pairs, &mut self.relations];
+        all.extend(self.descent.lists());
+        all
+    }
+
+    /// Notes whether the order of bodies is stale, by a frame's counters.
+    fn count(&mut self, counters: &Counts) {
+        let pairs = self.group_pairs.demand(counters);
+        let first = *self.first.get_or_insert(pairs);
+        self.is_stale = pairs > first + first / 4 + STALE;
+    }
+
+    /// Puts bodies in order.
+    fn put_in_order<R: Precision>(&mut self, given: &BroadContext<R>, layout: &Layout) -> Result<(), Error> {
+        let instances = given.instances.ok_or_else(without_instances)?;
+        (self.first, self.is_stale) = (None, false);
+        self.groups.construct(given.device, layout, instances)
+    }
+
+    fn prints(&self) -> Result<Vec<(&'static str, u64)>, Error> {
+        let (order, leaves, nodes) = self.groups.download()?;
+        Ok(vec![
+            ("construct", xxh3_64(bytemuck::cast_slice(&order))),
+            ("fit", xxh3_64(bytemuck::cast_slice(&leaves))),
+            ("refit", xxh3_64(bytemuck::cast_slice(&nodes))),
+        ])
+    }
+
+    /// Checks that each body has one place, and that its box and those above hold its placed
+    /// vertices at all ends. Checks of meshes are tests of `pipeline::instances`.
+    fn check_boxes<R: Precision>(
+        &self,
+        layout: &Layout,
+        faces: &[[u32; 3]],
+        frames: &Checked<R>,
+    ) -> Result<(), Error> {
+        let mut seen = vec![false; layout.bodies()];
+        for (leaf, body, volumes) in self.groups.volumes()? {
+            let is_known = seen.get_mut(body).is_some_and(|seen| !std::mem::replace(seen, true));
+            if !is_known {
+                return Err(broken(Violation::Leaf { leaf }));
+            }
+            let (first, count) = layout.triangles(body);
+            let own = faces.iter().skip(first as usize).take(count as usize).flatten();
+            let points: Vec<Vec3<f64>> =
+                own.flat_map(|&v| frames.iter().map(move |end| end[v as usize].wide())).collect();
+            let outside = |volume: &FrameBox| points.iter().any(|&point| !volume.holds(point, point));
+            if let Some(level) = volumes.iter().position(outside) {
+                return Err(broken(Violation::Outside { leaf, level: level as u32 }));
+            }
+        }
+        match (0..seen.len()).find(|&body| layout.triangles(body).1 > 0 && !seen[body]) {
+            Some(body) => Err(broken(Violation::Leaf { leaf: body as u32 })),
+            None => Ok(()),
+        }
+    }
+}
+
+impl BodyGroups {
     /// Lists pairs of bodies whose boxes overlap, and returns arguments to relate them.
     fn relations_args<R: Precision>(
         &mut self,
@@ -142,13 +205,6 @@ impl BodyGroups {
         Ok(RelationsArgs { tables, pairs, relations, left_out, counters })
     }
 
-    fn all_lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
-        let mut all: Vec<&mut dyn GrowableOutput> =
-            vec![&mut self.group_pairs, &mut self.body_pairs, &mut self.relations];
-        all.extend(self.descent.lists());
-        all
-    }
-
     /// Returns what candidates refer to: those of a descent, with these words and what was left.
     fn place(
         &self,
@@ -158,13 +214,6 @@ impl BodyGroups {
     ) -> Option<Placeable> {
         let (relations, tile_pairs) = (self.relations.entries(), of.tile_pairs.entries());
         self.tables.map(|tables| Placeable { tables, relations, tile_pairs, words, left })
-    }
-
-    /// Notes whether the order of bodies is stale, by a frame's counters.
-    fn count(&mut self, counters: &Counts) {
-        let pairs = self.group_pairs.demand(counters);
-        let first = *self.first.get_or_insert(pairs);
-        self.is_stale = pairs > first + first / 4 + STALE;
     }
 }
 
@@ -181,9 +230,7 @@ fn without_instances() -> Error {
 
 impl<R: Precision> CandidateSearch<R> for BodyGroups {
     fn construct(&mut self, given: &BroadContext<R>, layout: &Layout) -> Result<(), Error> {
-        let instances = given.instances.ok_or_else(without_instances)?;
-        (self.first, self.is_stale) = (None, false);
-        self.groups.construct(given.device, layout, instances)
+        self.put_in_order(given, layout)
     }
 
     fn learn(&mut self) -> Result<(), Error> {
@@ -207,7 +254,9 @@ impl<R: Precision> CandidateSearch<R> for BodyGroups {
         let device = given.device;
         let args = self.relations_args(given, candidates.counters)?;
         launch::striding::<entry::traverse_relations>(device, self.body_pairs.capacity(), &args)?;
-        self.descent.run(given, &args, |args| striding::<entry::traverse_nodes>(device, args))?;
+        let room = self.relations.capacity();
+        let of = (args.relations, args.counters);
+        self.descent.run(given, of, room, |args| striding::<entry::traverse_nodes>(device, args))?;
         striding::<entry::traverse_instances>(device, &self.descent.triangles(&args, candidates.pairs))
     }
 
@@ -229,35 +278,11 @@ impl<R: Precision> CandidateSearch<R> for BodyGroups {
     }
 
     fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error> {
-        let (order, leaves, nodes) = self.groups.download()?;
-        Ok(vec![
-            ("construct", xxh3_64(bytemuck::cast_slice(&order))),
-            ("fit", xxh3_64(bytemuck::cast_slice(&leaves))),
-            ("refit", xxh3_64(bytemuck::cast_slice(&nodes))),
-        ])
+        self.prints()
     }
 
-    /// Checks that each body has one place, and that its box and those above hold its placed
-    /// vertices. Checks of meshes are tests of `pipeline::instances`.
     fn check(&self, layout: &Layout, faces: &[[u32; 3]], frames: &Checked<R>) -> Result<(), Error> {
-        let mut seen = vec![false; layout.bodies()];
-        for (leaf, body, volumes) in self.groups.volumes()? {
-            let is_known = seen.get_mut(body).is_some_and(|seen| !std::mem::replace(seen, true));
-            if !is_known {
-                return Err(broken(Violation::Leaf { leaf }));
-            }
-            let (first, count) = layout.triangles(body);
-            let own = faces.iter().skip(first as usize).take(count as usize).flatten();
-            let points: Vec<Vec3<f64>> = own.map(|&v| frames[0][v as usize].wide()).collect();
-            let outside = |volume: &FrameBox| points.iter().any(|&point| !volume.holds(point, point));
-            if let Some(level) = volumes.iter().position(outside) {
-                return Err(broken(Violation::Outside { leaf, level: level as u32 }));
-            }
-        }
-        match (0..seen.len()).find(|&body| layout.triangles(body).1 > 0 && !seen[body]) {
-            Some(body) => Err(broken(Violation::Leaf { leaf: body as u32 })),
-            None => Ok(()),
-        }
+        self.check_boxes(layout, faces, frames)
     }
 }
 
@@ -295,7 +320,7 @@ mod tests {
         CandidateSearch::<f64>::fit(&mut groups, &given)?;
         CandidateSearch::<f64>::refit(&mut groups, &given)?;
         fault(&mut groups);
-        let positions = Checked::new(vec![instances.positions(&layout)?], Vec::new());
+        let positions = Checked::new(vec![instances.positions(&layout, 0)?], Vec::new());
         CandidateSearch::<f64>::check(&groups, &layout, &layout.faces, &positions)
     }
 

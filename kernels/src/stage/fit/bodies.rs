@@ -12,7 +12,7 @@
 //! Cost     64 B a pose and 96 B a mesh (from cache) in; 160 B a body out. 150 operations in f64.
 
 use super::tiles::{Fitted, fit};
-use crate::abi::{BodiesArgs, InstanceFrame, MeshRecord};
+use crate::abi::{BodiesArgs, InstanceFrame, MeshRecord, PoseRecord};
 use crate::bv::FrameBox;
 use crate::bvh::relation::size;
 use crate::exec::{Block, Lane};
@@ -21,30 +21,40 @@ use crate::math::{Real, Vec3, rigid, round};
 
 /// Places and boxes of bodies.
 pub fn bodies<B: Block>(block: &mut B, args: &BodiesArgs) {
-    let to = Fitted {
-        items: args.order,
-        leaves: args.leaves,
-        nodes: args.nodes,
-        tile: args.tile,
-        above: args.above,
-    };
     let (first, count) = (block.block() * block.lanes(), args.order.len() as u32);
-    fit(block, &to, |lane, body| {
-        let pose = lane.read(args.poses, body);
+    fit(block, &fitted(args), |lane, body| {
         let mesh = lane.read(args.tables.meshes, lane.read(args.tables.bodies, body).mesh);
-        let rows = rigid::rows(pose.rotation);
-        let frame = InstanceFrame {
-            rows,
-            translation: pose.translation,
-            origin: rigid::moved(&rows, &pose.translation, Vec3(mesh.centre)).0,
-            far: size(&pose.translation) + size(&mesh.centre),
-        };
+        let frame = frame(&lane.read(args.poses, body), &mesh);
         // The last body is there again behind it, and has one writer.
         if first + lane.lane() < count {
             lane.write(args.tables.frames, body, frame);
         }
         placed_box(&frame, &mesh, args.margin)
     });
+}
+
+/// Bodies in order, and their nodes.
+#[inline(always)]
+pub fn fitted(args: &BodiesArgs) -> Fitted<FrameBox> {
+    Fitted {
+        items: args.order,
+        leaves: args.leaves,
+        nodes: args.nodes,
+        tile: args.tile,
+        above: args.above,
+    }
+}
+
+/// The place of a mesh by a pose.
+#[inline(always)]
+pub fn frame(pose: &PoseRecord, mesh: &MeshRecord) -> InstanceFrame {
+    let rows = rigid::rows(pose.rotation);
+    InstanceFrame {
+        rows,
+        translation: pose.translation,
+        origin: rigid::moved(&rows, &pose.translation, Vec3(mesh.centre)).0,
+        far: size(&pose.translation) + size(&mesh.centre),
+    }
 }
 
 /// Around everything within a margin of a mesh's placed vertices, in f32.

@@ -5,6 +5,7 @@
 //! | --- | --- | --- | --- |
 //! | [`tiles`] | tiles: **the default** | triangles, tiles, nodes above tiles | each frame |
 //! | [`bodies`] | instances | bodies, groups, nodes above groups | each frame of rigid scenes |
+//! | [`moving_bodies`] | instances | the same, around a step | each frame of rigid scenes in motion |
 //! | [`rims`] | tiles | edges opposite to hubs | if adjacent pairs are kept |
 //! | [`leaves`] | trees, the paper's | leaves | by the refit by level |
 //! | [`leaves`] `groups` | trees | nodes with few leaves | by oriented boxes |
@@ -13,5 +14,6 @@
 
 pub mod bodies;
 pub mod leaves;
+pub mod moving_bodies;
 pub mod rims;
 pub mod tiles;

@@ -7,6 +7,7 @@
 //! | [`nodes`] | pairs of nodes | pairs of nodes below, and pairs of tiles |
 //! | [`triangles`] | pairs of tiles | candidates |
 //! | [`touching`] | pairs of tiles | pairs of bodies that share a point, undecided candidates |
+//! | [`vertices`] | candidates in motion | their vertices, placed; triangles of the scene |
 //! | [`within`] | pairs of nodes and tiles | bounds of distances, candidates within them |
 //!
 //! The volumes of a mesh never change: a pose moves them. Everything below two bodies is tested in
@@ -16,4 +17,5 @@ pub mod nodes;
 pub mod relations;
 pub mod touching;
 pub mod triangles;
+pub mod vertices;
 pub mod within;

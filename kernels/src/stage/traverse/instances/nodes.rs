@@ -12,13 +12,15 @@
 //! Cost     32 B a node; a box in the other frame 50 operations. Those of one side that meet the
 //!          node of the other are rows, a vote each.
 //!
+//! [`moving_nodes`] does the same for a step, by boxes around both ends: see [`crate::bvh::motion`].
+//!
 //! [`nodes_within`] keeps pairs whose gap is within the bound of their relation, see
 //! [`super::within`].
 
-use crate::abi::{MeshNode, NodePair, NodesArgs, NodesWithinArgs, Output, Relation, counter};
+use crate::abi::{MeshNode, MovingNodesArgs, NodePair, NodesArgs, NodesWithinArgs, Output, counter};
 use crate::bvh::gap::CloseInBoth;
 use crate::bvh::pieces::Pieces;
-use crate::bvh::relation::Both;
+use crate::bvh::relation::{Both, Related};
 use crate::bvh::tiles::TILE;
 use crate::exec::{Block, Lane, Own, PairTest, Slot};
 use bytemuck::Zeroable;
@@ -86,13 +88,18 @@ fn below(at: u32, node: &MeshNode) -> (u32, u32) {
 
 /// Pairs of nodes below pairs.
 pub fn nodes<B: Block>(block: &mut B, args: &NodesArgs) {
-    descend::<Overlap, B>(block, args, |_, _, _| 0.0);
+    descend::<Overlap, _, B>(block, args, args.relations, |_, _, _| 0.0);
+}
+
+/// Pairs of nodes below pairs of bodies in motion.
+pub fn moving_nodes<B: Block>(block: &mut B, args: &MovingNodesArgs) {
+    descend::<Overlap, _, B>(block, &args.of, args.relations, |_, _, _| 0.0);
 }
 
 /// Pairs of nodes below pairs that may hold the nearest pair of triangles.
 pub fn nodes_within<B: Block>(block: &mut B, args: &NodesWithinArgs) {
     let word = block.shared::<u32>(4);
-    descend::<Near, B>(block, &args.of, |block, number, relation| {
+    descend::<Near, _, B>(block, &args.of, args.of.relations, |block, number, relation| {
         super::within::reach(block, &args.words, word, (number, relation))
     });
 }
@@ -100,13 +107,14 @@ pub fn nodes_within<B: Block>(block: &mut B, args: &NodesWithinArgs) {
 /// Pairs of nodes below pairs, by a test. `limit` returns the square of the largest gap of a
 /// relation's nodes.
 #[inline(always)]
-fn descend<T: Test, B: Block>(
+fn descend<T: Test, Q: Related, B: Block>(
     block: &mut B,
     args: &NodesArgs,
-    mut limit: impl FnMut(&mut B, u32, &Relation) -> f32,
+    relations: Output<Q>,
+    mut limit: impl FnMut(&mut B, u32, &Q) -> f32,
 ) {
     let is_root = args.pairs.items().is_empty();
-    let count = if is_root { args.relations.listed(block) } else { args.pairs.listed(block) };
+    let count = if is_root { relations.listed(block) } else { args.pairs.listed(block) };
     let share = block.share(count, 1);
     if share.is_empty() {
         return;
@@ -119,9 +127,9 @@ fn descend<T: Test, B: Block>(
     while unit < share.end {
         let pair = if is_root { NodePair::zeroed() } else { block.load(args.pairs.items(), unit) };
         let number = if is_root { unit } else { pair.relation };
-        let relation = block.load(args.relations.items(), number);
+        let relation = block.load(relations.items(), number);
         let [a, b] = if is_root {
-            relation.bodies.map(|body| {
+            relation.bodies().map(|body| {
                 let mesh = block.load(args.tables.bodies, body).mesh;
                 block.load(args.tables.meshes, mesh).root
             })
@@ -132,19 +140,21 @@ fn descend<T: Test, B: Block>(
         let ((a, a_count), (b, b_count)) = (below(a, &of_a), below(b, &of_b));
         let most = limit(block, number, &relation);
         let [whole_a, whole_b] =
-            [relation.of_first(&of_a.volume), relation.of_second(&of_b.volume)].map(|x| T::item(x, most));
+            [relation.first_in_both(&of_a.volume), relation.second_in_both(&of_b.volume)]
+                .map(|both| T::item(both, most));
         let height = block.select(
             a_count.max(b_count),
             |lane| {
                 let i = lane.lane();
                 let (mut row, mut is_row) = (T::Item::zeroed(), false);
                 if i < a_count {
-                    row = T::item(relation.of_first(&lane.read(args.tables.nodes, a + i).volume), most);
+                    let volume = lane.read(args.tables.nodes, a + i).volume;
+                    row = T::item(relation.first_in_both(&volume), most);
                     is_row = T::test(&row, &whole_b);
                 }
                 if i < b_count {
-                    let node = lane.read(args.tables.nodes, b + i);
-                    let column = T::item(relation.of_second(&node.volume), most);
+                    let volume = lane.read(args.tables.nodes, b + i).volume;
+                    let column = T::item(relation.second_in_both(&volume), most);
                     *columns.of(lane) = (column, T::test(&column, &whole_a));
                 }
                 (is_row, row)

@@ -9,39 +9,84 @@
 //!          Bodies whose boxes do not overlap have no two triangles with a common point.
 //! Room     `relations` may be too short: counters go on, the host grows it and runs again.
 //! Cost     8 B a pair in, 500 B gathered from cache, 80 B a relation out. 200 operations in f64.
-
 //!
 //! [`relations_within`] keeps pairs whose root boxes have no gap beyond the distance of the query,
 //! instead ([`crate::bvh::gap`]). A pair that is left out has no two triangles within it.
+//!
+//! [`moving_relations`] keeps pairs whose root boxes meet in a step, at both ends and in between
+//! ([`crate::bvh::motion`]). A pair that is left out stays farther apart than `within`.
 
-use crate::abi::{Relation, RelationsArgs, RelationsWithinArgs, counter};
-use crate::bvh::gap::{CloseInBoth, limit};
+use crate::abi::{
+    Counters, InstanceTables, MeshRecord, MovingRelation, MovingRelationsArgs, Output, Pair, Relation,
+    RelationsArgs, RelationsWithinArgs, Span, counter,
+};
 use crate::bvh::filter::is_left_out;
-use crate::bvh::relation::Both;
+use crate::bvh::gap::{CloseInBoth, limit};
+use crate::bvh::relation::{Both, Related};
 use crate::exec::{Block, Lane, Slot};
 
 /// Pairs of bodies whose root boxes meet.
 pub fn relations<B: Block>(block: &mut B, args: &RelationsArgs) {
-    list(block, args, |_, first, second| first.overlaps(second));
+    list(block, (args.pairs, args.left_out), args.relations, args.counters, |lane, pair| {
+        related(lane, args, pair, |_, first, second| first.overlaps(second))
+    });
 }
 
 /// Pairs of bodies whose root boxes are within a distance.
 pub fn relations_within<B: Block>(block: &mut B, args: &RelationsWithinArgs) {
-    let within = args.words.within;
-    list(block, &args.of, |relation, first, second| {
-        let limit = limit(within, relation.slack);
-        CloseInBoth { both: *first, limit }.reaches(&CloseInBoth { both: *second, limit })
+    let (of, within) = (&args.of, args.words.within);
+    list(block, (of.pairs, of.left_out), of.relations, of.counters, |lane, pair| {
+        related(lane, of, pair, |relation, first, second| {
+            let limit = limit(within, relation.slack);
+            CloseInBoth { both: *first, limit }.reaches(&CloseInBoth { both: *second, limit })
+        })
     });
 }
 
-/// Lists pairs whose root boxes pass a test.
+/// Pairs of bodies whose root boxes meet in a step.
+pub fn moving_relations<B: Block>(block: &mut B, args: &MovingRelationsArgs) {
+    let tables = &args.tables;
+    list(block, (args.pairs, args.left_out), args.relations, args.counters, |lane, pair| {
+        let bodies = [pair.a, pair.b];
+        let [of_a, of_b] = bodies.map(|body| mesh(lane, tables, body));
+        let [a, b] = bodies.map(|body| lane.read(tables.frames, body));
+        let [a_end, b_end] = bodies.map(|body| lane.read(args.ends, body));
+        let [of_first, of_second] = bodies.map(|body| lane.read(args.motions, body));
+        let frames = [[&a, &b], [&a_end, &b_end]];
+        let motions = [&of_first, &of_second];
+        let relation = MovingRelation::of(bodies, frames, [&of_a, &of_b], motions, args.within);
+        overlaps(lane, tables, &relation, [of_a.root, of_b.root]).then_some(relation)
+    });
+}
+
+/// The mesh of a body.
 #[inline(always)]
-fn list<B: Block>(
+fn mesh<L: Lane>(lane: &L, tables: &InstanceTables, body: u32) -> MeshRecord {
+    lane.read(tables.meshes, lane.read(tables.bodies, body).mesh)
+}
+
+/// Whether two nodes overlap.
+#[inline(always)]
+fn overlaps<Q: Related, L: Lane>(
+    lane: &L,
+    tables: &InstanceTables,
+    relation: &Q,
+    [a, b]: [u32; 2],
+) -> bool {
+    let first = relation.first_in_both(&lane.read(tables.nodes, a).volume);
+    first.overlaps(&relation.second_in_both(&lane.read(tables.nodes, b).volume))
+}
+
+/// Lists the relations of pairs that have one.
+#[inline(always)]
+fn list<Q: Related, B: Block>(
     block: &mut B,
-    args: &RelationsArgs,
-    test: impl Fn(&Relation, &Both, &Both) -> bool + Copy,
+    (pairs, left_out): (Output<Pair>, Span<u32>),
+    relations: Output<Q>,
+    counters: Counters,
+    of: impl Fn(&B::Lane, Pair) -> Option<Q>,
 ) {
-    let (count, lanes) = (args.pairs.listed(block), block.lanes());
+    let (count, lanes) = (pairs.listed(block), block.lanes());
     let share = block.share(count, lanes);
     if share.is_empty() {
         return;
@@ -52,22 +97,26 @@ fn list<B: Block>(
     while base < share.end {
         block.phase(|lane| {
             let i = base + lane.lane();
-            let own = if i < share.end { related(lane, args, i, test) } else { None };
+            let pair = (i < share.end).then(|| pairs.get(lane, i));
+            let is_listed = |pair: &Pair| {
+                !left_out.is_empty() && is_left_out(pair.a, pair.b, |k| lane.read(left_out, k))
+            };
+            let own = pair.filter(|pair| !is_listed(pair)).and_then(|pair| of(lane, pair));
             *places.of(lane) = own.is_some() as u32;
             *found.of(lane) = own;
             lane.meet();
         });
-        let start = args.relations.append(block, &mut places);
+        let start = relations.append(block, &mut places);
         block.phase(|lane| {
             if let Some(relation) = *found.of(lane) {
-                args.relations.put(lane, start + *places.of(lane) as u64, relation);
+                relations.put(lane, start + *places.of(lane) as u64, relation);
             }
             lane.meet();
         });
         base += share.step;
     }
     if block.block() == 0 {
-        args.counters.add_once(block, counter::STEPS, count.into());
+        counters.add_once(block, counter::STEPS, count.into());
     }
 }
 
@@ -76,17 +125,11 @@ fn list<B: Block>(
 fn related<L: Lane>(
     lane: &L,
     args: &RelationsArgs,
-    i: u32,
+    pair: Pair,
     test: impl Fn(&Relation, &Both, &Both) -> bool,
 ) -> Option<Relation> {
-    let (tables, pair) = (&args.tables, args.pairs.get(lane, i));
-    if !args.left_out.is_empty() && is_left_out(pair.a, pair.b, |k| lane.read(args.left_out, k)) {
-        return None;
-    }
-    let of = |body: u32| {
-        let mesh = lane.read(tables.meshes, lane.read(tables.bodies, body).mesh);
-        (lane.read(tables.frames, body), mesh)
-    };
+    let tables = &args.tables;
+    let of = |body: u32| (lane.read(tables.frames, body), mesh(lane, tables, body));
     let ((a, of_a), (b, of_b)) = (of(pair.a), of(pair.b));
     let relation = Relation::of([pair.a, pair.b], [&a, &b], [&of_a, &of_b]);
     let first = relation.of_first(&lane.read(tables.nodes, of_a.root).volume);

@@ -138,5 +138,5 @@ pub fn touching<B: Block>(block: &mut B, args: &TouchingArgs) {
     let words = block.shared::<u32>(4);
     let mut decide =
         Decide { args, words, meets: block.slot(false), left: block.slot(None), places: block.slot(0) };
-    triangles(block, &args.of, &mut decide);
+    triangles(block, &args.of, args.of.relations, &mut decide);
 }

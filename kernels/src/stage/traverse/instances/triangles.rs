@@ -6,19 +6,23 @@
 //! Before   relations and pairs of tiles are listed.
 //! After    pairs ⊇ {(p, q) : p in tile a, q in tile b, placed triangles share a point}.
 //!          Boxes overlap in the frame of the first body, and no plane of the two parts them.
+//!          [`moving_candidates`]: that come within the query's distance in the step.
 //! Room     `pairs` may be too short: counters go on, the host grows it and runs again.
 //! Cost     24 B a triangle, contiguous; 48 B one that meets the other tile's box. Those that do are
 //!          rows on the side that has fewer of them, and columns on the other, a lane each; a row
 //!          takes a test of all columns and a vote. Planes take full warps: 100 operations in f32 a
 //!          pair.
 
-use crate::abi::{Candidate, InstancesArgs, MeshLeaf, NONE, NodePair, Output, Pair, counter};
+use crate::abi::{
+    Candidate, InstancesArgs, MeshLeaf, MovingInstancesArgs, MovingRelation, NONE, NodePair, Output, Pair,
+    Relation, counter,
+};
 use crate::bv::FrameBox;
 use crate::bvh::pieces::Pieces;
+use crate::bvh::relation::Related;
 use crate::bvh::tiles::TILE;
 use crate::exec::{Block, Lane, Own, PairTest, RowMap, Shared, Slot};
-use crate::math::Vec3;
-use crate::prim::planes;
+use core::marker::PhantomData;
 
 /// Lanes of a block.
 pub const LANES: u32 = TILE;
@@ -29,8 +33,13 @@ const FOUND: u32 = LANES * LANES;
 /// Corners of a triangle.
 pub type Corners = [[f32; 3]; 3];
 /// Shared memory of a block.
-pub const SHARED: u32 =
-    2 * Pieces::<FrameBox>::bytes(LANES) + Pieces::<Corners>::bytes(LANES) + 2 * 4 * LANES + 4 * FOUND;
+pub const SHARED: u32 = shared_bytes::<Relation>();
+/// That of [`moving_candidates`].
+pub const SHARED_MOVING: u32 = shared_bytes::<MovingRelation>();
+
+const fn shared_bytes<Q: Related>() -> u32 {
+    2 * Pieces::<FrameBox>::bytes(LANES) + Pieces::<Q::Seen>::bytes(LANES) + 2 * 4 * LANES + 4 * FOUND
+}
 
 /// Whether boxes overlap.
 pub struct Overlap;
@@ -44,8 +53,9 @@ impl PairTest for Overlap {
 }
 
 /// The planes of two triangles.
-struct Planes {
+struct Planes<Q> {
     slack: f32,
+    of: PhantomData<Q>,
 }
 
 /// Result for two triangles that a plane parts.
@@ -53,13 +63,12 @@ const APART: u32 = 0;
 /// For two that may meet.
 const MAY_MEET: u32 = 1;
 
-impl RowMap for Planes {
+impl<Q: Related> RowMap for Planes<Q> {
     type Number = f32;
-    type Row = [Corners; 2];
+    type Row = Q::Row;
     #[inline(always)]
-    fn at_once(&self, [p, q]: [Corners; 2]) -> u32 {
-        let corners = |t: Corners| [Vec3(t[0]), Vec3(t[1]), Vec3(t[2])];
-        if planes::apart(&corners(p), &corners(q), self.slack) { APART } else { MAY_MEET }
+    fn at_once(&self, row: Q::Row) -> u32 {
+        if Q::are_apart(row, self.slack) { APART } else { MAY_MEET }
     }
 }
 
@@ -110,19 +119,29 @@ impl<B: Block> Take<B> for ListAll {
 
 /// Candidates of pairs of tiles.
 pub fn candidates<B: Block>(block: &mut B, args: &InstancesArgs) {
-    triangles(block, args, &mut ListAll);
+    triangles(block, args, args.relations, &mut ListAll);
+}
+
+/// Candidates of pairs of tiles of bodies in motion.
+pub fn moving_candidates<B: Block>(block: &mut B, args: &MovingInstancesArgs) {
+    triangles(block, &args.of, args.relations, &mut ListAll);
 }
 
 /// Pairs of triangles of pairs of tiles, taken by `to`.
 #[inline(always)]
-pub fn triangles<B: Block, T: Take<B>>(block: &mut B, args: &InstancesArgs, to: &mut T) {
+pub fn triangles<Q: Related, B: Block, T: Take<B>>(
+    block: &mut B,
+    args: &InstancesArgs,
+    relations: Output<Q>,
+    to: &mut T,
+) {
     let (count, tables) = (args.tile_pairs.listed(block), &args.tables);
     let share = block.share(count, T::RUN);
     if share.is_empty() {
         return;
     }
     let sides = [Pieces::<FrameBox>::new(block, LANES), Pieces::<FrameBox>::new(block, LANES)];
-    let corners = Pieces::<Corners>::new(block, LANES);
+    let corners = Pieces::<Q::Seen>::new(block, LANES);
     let names = [block.shared::<u32>(LANES), block.shared::<u32>(LANES)];
     let found = block.shared::<u32>(FOUND);
     let mut verdicts = block.slot(None);
@@ -135,10 +154,11 @@ pub fn triangles<B: Block, T: Take<B>>(block: &mut B, args: &InstancesArgs, to: 
             next = run;
         }
         let pair = block.load(args.tile_pairs.items(), unit);
-        let relation = block.load(args.relations.items(), pair.relation);
-        let Some(most) = to.matters(block, relation.bodies, &pair) else { continue };
+        let relation = block.load(relations.items(), pair.relation);
+        let Some(most) = to.matters(block, relation.bodies(), &pair) else { continue };
         let [tile_a, tile_b] = [pair.a, pair.b].map(|tile| block.load(tables.nodes, tile).volume);
-        let (in_second, in_first) = (relation.of_first(&tile_a).second, relation.of_second(&tile_b).first);
+        let in_second = relation.first_in_both(&tile_a).second;
+        let in_first = relation.second_in_both(&tile_b).first;
         tests += 2 * LANES as u64;
         let mut of_a =
             block.select_columns::<Overlap>(tables.columns, pair.a * COLUMNS, &in_first, |lane, at| {
@@ -171,12 +191,12 @@ pub fn triangles<B: Block, T: Take<B>>(block: &mut B, args: &InstancesArgs, to: 
             |lane| {
                 let name = lane.get(names[1], lane.lane());
                 let corners = lane.read(tables.triangles, pair.b * TILE + name).corners;
-                let (moved, volume) = relation.triangle_to_first(&corners);
-                (volume.overlaps(&tile_a), (name, moved, volume))
+                let (seen, volume) = relation.seen(&corners);
+                (volume.overlaps(&tile_a), (name, seen, volume))
             },
-            |lane, at, (name, moved, volume)| {
+            |lane, at, (name, seen, volume)| {
                 sides[1].put(lane, at, volume);
-                corners.put(lane, at, moved);
+                corners.put(lane, at, seen);
                 lane.put(names[1], at, name);
             },
         );
@@ -200,7 +220,7 @@ pub fn triangles<B: Block, T: Take<B>>(block: &mut B, args: &InstancesArgs, to: 
                 lane.put(found, at, Candidate::word(if is_turned { [name, k] } else { [k, name] }));
             },
         );
-        let map = Planes { slack: relation.slack };
+        let map = Planes::<Q> { slack: relation.slack(), of: PhantomData };
         let fits = sift(
             block,
             &map,
@@ -208,12 +228,12 @@ pub fn triangles<B: Block, T: Take<B>>(block: &mut B, args: &InstancesArgs, to: 
             &mut verdicts,
             |lane, [p, q]| {
                 let place = pair.a * TILE + lane.get(names[0], p);
-                [lane.read(tables.triangles, place).corners, corners.get(lane, q)]
+                Q::row(lane.read(tables.triangles, place).corners, corners.get(lane, q))
             },
             |_, verdict| verdict == MAY_MEET,
             |lane, [p, q]| [lane.get(names[0], p), lane.get(names[1], q)],
         );
-        to.take(block, args, (unit, relation.bodies, pair), found, fits);
+        to.take(block, args, (unit, relation.bodies(), pair), found, fits);
     }
     args.counters.add_once(block, counter::STEPS, tests);
 }
@@ -221,12 +241,12 @@ pub fn triangles<B: Block, T: Take<B>>(block: &mut B, args: &InstancesArgs, to: 
 /// Maps collected pairs of triangles, and keeps some, in their order. Full warps. `gather` reads the
 /// corners of a pair, `named` gives those kept their places in the tiles. Returns how many.
 #[inline(always)]
-pub fn sift<B: Block, M: RowMap<Row = [Corners; 2]>>(
+pub fn sift<B: Block, M: RowMap>(
     block: &mut B,
     map: &M,
     (found, fill): (Shared<u32>, u32),
     verdicts: &mut B::Slot<Option<(u32, u32)>>,
-    mut gather: impl FnMut(&B::Lane, [u32; 2]) -> [Corners; 2],
+    mut gather: impl FnMut(&B::Lane, [u32; 2]) -> M::Row,
     mut keeps: impl FnMut(&B::Lane, u32) -> bool,
     mut named: impl FnMut(&B::Lane, [u32; 2]) -> [u32; 2],
 ) -> u32 {

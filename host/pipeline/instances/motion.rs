@@ -1,0 +1,179 @@
+//! Instances in motion: two poses a body, and the vertices of candidates.
+//!
+//! Vertices and faces have their numbers in the scene, so that the narrow phase reads them as it reads
+//! those that are all placed. Only vertices of candidates are placed: the others are memory that
+//! nothing writes or reads.
+
+use crate::device::{Buffer, Device};
+use crate::error::Error;
+use crate::pipeline::layout::Layout;
+use crate::pipeline::placing::turns::{self, Turns};
+use crate::pipeline::purpose;
+use crate::scene::{Body, BodyKind, Pose};
+use nearmiss_kernels::abi::{
+    BodiesArgs, CandidateVerticesArgs, InstanceFrame, InstanceMotion, InstanceTables, MovingBodiesArgs,
+    MovingRelation, NodePair, Output, POSED, Pair, Placement, Point, PoseRecord, Positions, Span, TurnSource,
+    VertexMotion,
+};
+
+/// Motions of bodies, and vertices of candidates.
+pub struct InMotion {
+    /// Two poses a body; and on the host.
+    poses: Buffer<PoseRecord>,
+    placed: Vec<PoseRecord>,
+    ends: Buffer<InstanceFrame>,
+    motions: Buffer<InstanceMotion>,
+    /// Bodies that may turn on their arcs.
+    turns: Turns,
+    /// Each body's first vertex in the scene, and among those of all meshes.
+    firsts: Vec<[u32; 2]>,
+    faces: Buffer<[u32; 3]>,
+    /// Vertices of the scene at one end, or at both: empty before a query that reads them.
+    still: Buffer<Point<f64>>,
+    moving: Buffer<VertexMotion<f64>>,
+    /// The frame in which each vertex was placed last, and the number of the last frame.
+    placed_in: Buffer<u64>,
+    frame: Buffer<u64>,
+}
+
+/// Both poses of a body; one that is no rigid one is where its mesh is, exactly.
+fn poses(body: &Body) -> [PoseRecord; 2] {
+    let is_rigid = body.kind() == BodyKind::Rigid;
+    if is_rigid { body.poses().map(|pose| pose.record()) } else { [Pose::default().record(); 2] }
+}
+
+impl InMotion {
+    /// Allocates the memory of bodies with these first vertices among those of all meshes.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn new(device: &Device, bodies: &[Body], layout: &Layout, firsts: &[u32]) -> Result<Self, Error> {
+        let of_bodies = device.of(purpose::INSTANCES);
+        let vertices = layout.starts[layout.bodies()].vertex as usize;
+        let (mut placed_in, mut frame) =
+            (device.of(purpose::PLACED).buffer(vertices)?, of_bodies.buffer(1)?);
+        placed_in.clear()?;
+        frame.clear()?;
+        let starts = layout.starts.iter().zip(firsts);
+        Ok(InMotion {
+            poses: device.of(purpose::POSES).buffer(2 * bodies.len())?,
+            placed: Vec::new(),
+            ends: of_bodies.buffer(bodies.len())?,
+            motions: of_bodies.buffer(bodies.len())?,
+            turns: Turns::new(device)?,
+            firsts: starts.map(|(start, &first)| [start.vertex, first]).collect(),
+            faces: device.of(purpose::FACES).upload(&layout.faces)?,
+            still: device.buffer(0)?,
+            moving: device.buffer(0)?,
+            placed_in,
+            frame,
+        })
+    }
+
+    /// Allocates vertices for a query at rest or in motion.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn reserve(&mut self, device: &Device, is_at_rest: bool) -> Result<(), Error> {
+        let (device, count) = (device.of(purpose::CANDIDATE_VERTICES), self.placed_in.len());
+        if is_at_rest && self.still.is_empty() {
+            self.still = device.buffer(count)?;
+        }
+        if !is_at_rest && self.moving.is_empty() {
+            self.moving = device.buffer(count)?;
+        }
+        Ok(())
+    }
+
+    /// Uploads the poses of all bodies, and places their turns.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn put(&mut self, device: &Device, bodies: &[Body]) -> Result<(), Error> {
+        self.placed.clear();
+        self.placed.extend(bodies.iter().flat_map(poses));
+        self.poses.write(&self.placed)?;
+        let source = |(at, (body, &[vertex, source])): (usize, (&Body, &[u32; 2]))| {
+            let pose = 2 * at as u32;
+            let placement = Placement { vertex, source, pose, from: POSED, ..Placement::default() };
+            turns::source(body, &placement, 0.0)
+        };
+        let sources: Vec<TurnSource> =
+            bodies.iter().zip(&self.firsts).enumerate().filter_map(source).collect();
+        self.turns.hold(device, sources)?;
+        turns::launch(device, &self.turns.args(self.poses.span(), Span::EMPTY))
+    }
+
+    /// Returns whether bodies have other poses than those on the device. By bytes: the sign of a zero
+    /// may change the bits of a placed vertex.
+    pub fn differ(&self, bodies: &[Body]) -> bool {
+        let all = bodies.iter().flat_map(poses);
+        let is_other = |(held, own): (&PoseRecord, PoseRecord)| {
+            bytemuck::bytes_of(held) != bytemuck::bytes_of(&own)
+        };
+        self.placed.len() != 2 * bodies.len() || self.placed.iter().zip(all).any(is_other)
+    }
+
+    /// Returns the frames at the end, for kernels.
+    pub fn ends(&self) -> Span<InstanceFrame> {
+        self.ends.span()
+    }
+
+    /// Returns the motions, for kernels.
+    pub fn motions(&self) -> Span<InstanceMotion> {
+        self.motions.span()
+    }
+
+    /// Returns vertex indices of every triangle of the scene, for kernels.
+    pub fn faces(&self) -> Span<[u32; 3]> {
+        self.faces.span()
+    }
+
+    /// Returns the pose of each body at an end.
+    pub fn placed(&self, end: usize) -> impl Iterator<Item = &PoseRecord> {
+        self.placed.iter().skip(end).step_by(2)
+    }
+
+    /// Returns the vertices of candidates, at one end or in motion.
+    pub fn vertices(&self, is_at_rest: bool) -> Positions<f64> {
+        if is_at_rest {
+            Positions { still: self.still.span(), moving: Span::EMPTY, turns: Span::EMPTY }
+        } else {
+            Positions { still: Span::EMPTY, moving: self.moving.span(), turns: self.turns.span() }
+        }
+    }
+
+    /// Returns arguments to fit bodies around these poses of each.
+    pub fn fit_args(&self, of: BodiesArgs, poses: u32) -> MovingBodiesArgs {
+        MovingBodiesArgs {
+            of: BodiesArgs { poses: self.poses.span(), ..of },
+            ends: self.ends.span(),
+            motions: self.motions.span(),
+            turns: if poses == 1 { Span::EMPTY } else { self.turns.span() },
+            faces: self.faces.span(),
+            frame: self.frame.span(),
+            poses,
+            pad: 0,
+        }
+    }
+
+    /// Returns arguments to place vertices of candidates.
+    pub fn vertices_args(
+        &self,
+        tables: InstanceTables,
+        (relations, tile_pairs, pairs): (Span<MovingRelation>, Span<NodePair>, Output<Pair>),
+        is_at_rest: bool,
+    ) -> CandidateVerticesArgs {
+        CandidateVerticesArgs {
+            tables,
+            ends: self.ends.span(),
+            relations,
+            tile_pairs,
+            pairs,
+            faces: self.faces.span(),
+            placed: self.placed_in.span(),
+            frame: self.frame.span(),
+            vertices: self.vertices(is_at_rest),
+        }
+    }
+}
