@@ -8,7 +8,7 @@ use std::ops::{Deref, DerefMut};
 /// Unit of a piece: its alignment is that of a piece.
 type Unit = MaybeUninit<u128>;
 
-/// What a thread keeps.
+/// Memory that a thread keeps.
 #[derive(Default)]
 struct Kept {
     pieces: Vec<Vec<Unit>>,

@@ -218,3 +218,30 @@ fn queues(counters: &Counts) -> Queues {
         longest: of(counter::QUEUED),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::soup;
+    use crate::scene::Body;
+
+    #[test]
+    fn few_pairs_are_rows_in_canonical_order() {
+        let mesh = |count| Body::fixed(soup(count, 1, false).frames().swap_remove(0));
+        let bodies = [mesh(3), Body::none(), mesh(40), mesh(1), mesh(200)];
+        let layout = Layout::new(&bodies, Query::discrete().kind());
+        let pair = |i: u32| {
+            let (a, b) = (i * 37 % 244, i * 101 % 244);
+            (a != b).then(|| Pair { a: a.min(b), b: a.max(b) })
+        };
+        let pairs: Vec<Pair> = (0..2_000).filter_map(pair).collect();
+        let row = |pair: &Pair| {
+            let [(a, p), (b, q)] = [pair.a, pair.b].map(|t| layout.locate(t, |at| at.triangle));
+            TrianglePair { bodies: [a, b], triangles: [p, q] }
+        };
+        let mut rows: Vec<TrianglePair> = pairs.iter().map(row).collect();
+        rows.sort_unstable_by_key(TrianglePair::key);
+        assert_eq!(few(pairs.iter(), &layout), rows);
+        assert!(rows.iter().any(|row| row.bodies == [BodyId(0), BodyId(4)]));
+    }
+}

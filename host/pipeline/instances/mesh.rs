@@ -182,18 +182,29 @@ mod tests {
     use super::*;
     use crate::samples::soup;
 
+    /// The place of a number of a box among the columns.
+    fn in_column(place: usize, k: usize) -> usize {
+        (place / FAN * MeshLeaf::COLUMNS as usize + k) * FAN + place % FAN
+    }
+
     /// Checks a mesh's tiles: each triangle in one place, each box around everything below it.
     fn check(faces: &[[u32; 3]], tiles: &MeshTiles) -> Result<(), String> {
         let mut seen = vec![0; faces.len()];
         for (place, &MeshLeaf { volume, number, .. }) in tiles.leaves.iter().enumerate() {
             let triangle = tiles.triangles[place];
             if number == NONE {
+                if !f32::from_bits(tiles.columns[in_column(place, 0)]).is_nan() {
+                    return Err(format!("place {place} has a box and no triangle"));
+                }
                 continue;
             }
             seen[number as usize] += 1;
             let holds = |outer: &FrameBox, inner: &FrameBox| outer.merge(*inner) == *outer;
+            let column = |k: usize| f32::from_bits(tiles.columns[in_column(place, k)]);
+            let in_columns = FrameBox { lo: [0, 1, 2].map(column), hi: [3, 4, 5].map(column) };
             if triangle.vertices != faces[number as usize]
                 || volume != corners_box(&triangle.corners)
+                || volume != in_columns
                 || !holds(&tiles.tiles[place / FAN].volume, &volume)
                 || tiles.tiles[place / FAN].first > number
             {
@@ -232,12 +243,17 @@ mod tests {
     #[test]
     fn a_wrong_tile_is_noticed() {
         let body = soup(1_848, 4, false);
-        let faults: [fn(&mut MeshTiles); 5] = [
+        let faults: [fn(&mut MeshTiles); 7] = [
             |tiles| tiles.tiles[7].first += 1,
             |tiles| tiles.tiles[7].volume.hi[1] = tiles.tiles[7].volume.lo[1],
             |tiles| tiles.leaves[3].number = tiles.leaves[90].number,
             |tiles| tiles.above[1].count -= 1,
             |tiles| tiles.triangles[40].corners[2][0] += 10.0,
+            |tiles| tiles.columns[5 * FAN] = 0,
+            |tiles| {
+                let place = tiles.leaves.iter().position(|leaf| leaf.number == NONE).expect("one is empty");
+                tiles.columns[in_column(place, 0)] = 0;
+            },
         ];
         for (i, fault) in faults.into_iter().enumerate() {
             let mut tiles = MeshTiles::new(body.faces(), body.positions_t0());

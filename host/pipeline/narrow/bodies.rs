@@ -91,9 +91,7 @@ impl<R: Precision> Narrow<R> for BodiesNarrow {
                 let relations = args.relations.room() as usize;
                 launch::striding::<entry::narrow_bodies_meeting>(device, relations, &args)
             }
-            (Rows::Nearest(_), 0) => {
-                launch::striding::<entry::narrow_bodies_exact>(device, of_left, &left)
-            }
+            (Rows::Nearest(_), 0) => launch::striding::<entry::narrow_bodies_exact>(device, of_left, &left),
             (Rows::Nearest(_), 1) => {
                 launch::striding::<entry::narrow_bodies_least>(device, candidates, &args)?;
                 launch::striding::<entry::narrow_bodies_first>(device, candidates, &args)

@@ -52,12 +52,7 @@ pub fn farther(p: &Triangle, q: &Triangle, of: (f32, f32)) -> bool {
 
 /// Whether heights in direction `n` part them by more than a length.
 #[inline(always)]
-fn parted(
-    n: Vec3<f32>,
-    p: &Triangle,
-    [start, end]: [&Triangle; 2],
-    (slack, length): (f32, f32),
-) -> bool {
+fn parted(n: Vec3<f32>, p: &Triangle, [start, end]: [&Triangle; 2], (slack, length): (f32, f32)) -> bool {
     let base = p[0];
     let ends = |t: &Triangle| {
         let (x, y, z) = (n.dot(t[0] - base), n.dot(t[1] - base), n.dot(t[2] - base));

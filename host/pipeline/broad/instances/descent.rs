@@ -68,12 +68,7 @@ impl Descent {
     }
 
     /// Returns the pairs of nodes after a level, made with this room if there are none.
-    fn after_level(
-        &mut self,
-        device: &Device,
-        level: usize,
-        room: usize,
-    ) -> Result<&List<NodePair>, Error> {
+    fn after_level(&mut self, device: &Device, level: usize, room: usize) -> Result<&List<NodePair>, Error> {
         while self.node_pairs.len() <= level {
             let which = self.counted.0[self.node_pairs.len()];
             self.node_pairs.push(List::new(device, "pairs of nodes", which, room)?);

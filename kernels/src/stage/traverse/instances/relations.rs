@@ -67,12 +67,7 @@ fn mesh<L: Lane>(lane: &L, tables: &InstanceTables, body: u32) -> MeshRecord {
 
 /// Whether two nodes overlap.
 #[inline(always)]
-fn overlaps<Q: Related, L: Lane>(
-    lane: &L,
-    tables: &InstanceTables,
-    relation: &Q,
-    [a, b]: [u32; 2],
-) -> bool {
+fn overlaps<Q: Related, L: Lane>(lane: &L, tables: &InstanceTables, relation: &Q, [a, b]: [u32; 2]) -> bool {
     let first = relation.first_in_both(&lane.read(tables.nodes, a).volume);
     first.overlaps(&relation.second_in_both(&lane.read(tables.nodes, b).volume))
 }
@@ -98,9 +93,8 @@ fn list<Q: Related, B: Block>(
         block.phase(|lane| {
             let i = base + lane.lane();
             let pair = (i < share.end).then(|| pairs.get(lane, i));
-            let is_listed = |pair: &Pair| {
-                !left_out.is_empty() && is_left_out(pair.a, pair.b, |k| lane.read(left_out, k))
-            };
+            let is_listed =
+                |pair: &Pair| !left_out.is_empty() && is_left_out(pair.a, pair.b, |k| lane.read(left_out, k));
             let own = pair.filter(|pair| !is_listed(pair)).and_then(|pair| of(lane, pair));
             *places.of(lane) = own.is_some() as u32;
             *found.of(lane) = own;

@@ -279,12 +279,7 @@ pub fn sift<B: Block, M: RowMap>(
 
 /// Lists pairs of triangles of a pair of tiles as candidates.
 #[inline(always)]
-pub fn list<B: Block>(
-    block: &mut B,
-    pairs: Output<Pair>,
-    tile_pair: u32,
-    (found, fits): (Shared<u32>, u32),
-) {
+pub fn list<B: Block>(block: &mut B, pairs: Output<Pair>, tile_pair: u32, (found, fits): (Shared<u32>, u32)) {
     let base = pairs.reserve(block, fits as u64);
     block.phase(|lane| {
         let mut at = lane.lane();
