@@ -126,6 +126,7 @@ pub fn triangles<B: Block>(block: &mut B, args: &InstancesArgs, to: &mut impl Ta
     let corners = Pieces::<Corners>::new(block, LANES);
     let names = [block.shared::<u32>(LANES), block.shared::<u32>(LANES)];
     let found = block.shared::<u32>(FOUND);
+    let mut column = block.slot(FrameBox::default());
     let mut verdicts = block.slot(None);
     let (mut unit, mut tests) = (share.first, 0u64);
     while unit < share.end {
@@ -173,13 +174,19 @@ pub fn triangles<B: Block>(block: &mut B, args: &InstancesArgs, to: &mut impl Ta
         if height == 0 {
             continue;
         }
+        block.phase(|lane| {
+            if lane.lane() < width {
+                *column.of(lane) = columns.get(lane, lane.lane());
+            }
+            lane.meet();
+        });
         let fill = block.cross_own::<Overlap>(
             0..height,
             0,
             |lane, k| rows.get(lane, k),
             |lane| {
-                let item = columns.get(lane, lane.lane());
-                Own { item, name: lane.lane(), end: if lane.lane() < width { height } else { 0 } }
+                let end = if lane.lane() < width { height } else { 0 };
+                Own { item: *column.of(lane), name: lane.lane(), end }
             },
             |lane, at, [k, name]| {
                 lane.put(found, at, Candidate::word(if is_turned { [name, k] } else { [k, name] }));
