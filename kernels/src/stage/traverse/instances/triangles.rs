@@ -144,6 +144,7 @@ pub fn triangles<Q: Related, B: Block, T: Take<B>>(
     let corners = Pieces::<Q::Seen>::new(block, LANES);
     let names = [block.shared::<u32>(LANES), block.shared::<u32>(LANES)];
     let found = block.shared::<u32>(FOUND);
+    let mut column = block.slot(FrameBox::default());
     let mut verdicts = block.slot(None);
     let (mut run, mut next, mut tests) = (share.first, share.first, 0u64);
     while next < share.end {
@@ -208,13 +209,19 @@ pub fn triangles<Q: Related, B: Block, T: Take<B>>(
         if height == 0 {
             continue;
         }
+        block.phase(|lane| {
+            if lane.lane() < width {
+                *column.of(lane) = columns.get(lane, lane.lane());
+            }
+            lane.meet();
+        });
         let fill = block.cross_own::<Overlap>(
             0..height,
             0,
             |lane, k| rows.get(lane, k),
             |lane| {
-                let item = columns.get(lane, lane.lane());
-                Own { item, name: lane.lane(), end: if lane.lane() < width { height } else { 0 } }
+                let end = if lane.lane() < width { height } else { 0 };
+                Own { item: *column.of(lane), name: lane.lane(), end }
             },
             |lane, at, [k, name]| {
                 lane.put(found, at, Candidate::word(if is_turned { [name, k] } else { [k, name] }));
