@@ -50,8 +50,7 @@ impl InMotion {
     pub fn new(device: &Device, bodies: &[Body], layout: &Layout, firsts: &[u32]) -> Result<Self, Error> {
         let of_bodies = device.of(purpose::INSTANCES);
         let vertices = layout.starts[layout.bodies()].vertex as usize;
-        let (mut placed_in, mut frame) =
-            (device.of(purpose::PLACED).buffer(vertices)?, of_bodies.buffer(1)?);
+        let (mut placed_in, mut frame) = (device.of(purpose::PLACED).buffer(vertices)?, of_bodies.buffer(1)?);
         placed_in.clear()?;
         frame.clear()?;
         let starts = layout.starts.iter().zip(firsts);
@@ -108,9 +107,8 @@ impl InMotion {
     /// may change the bits of a placed vertex.
     pub fn differ(&self, bodies: &[Body]) -> bool {
         let all = bodies.iter().flat_map(poses);
-        let is_other = |(held, own): (&PoseRecord, PoseRecord)| {
-            bytemuck::bytes_of(held) != bytemuck::bytes_of(&own)
-        };
+        let is_other =
+            |(held, own): (&PoseRecord, PoseRecord)| bytemuck::bytes_of(held) != bytemuck::bytes_of(&own);
         self.placed.len() != 2 * bodies.len() || self.placed.iter().zip(all).any(is_other)
     }
 

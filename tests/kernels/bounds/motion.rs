@@ -69,16 +69,11 @@ impl Moves {
         let mix = |a: Vec3<f64>, b: Vec3<f64>| a * (1.0 - t) + b * t;
         match &self.turn {
             Some(turn) => {
-                let arm = rigid::moved(
-                    &rigid::rows(turn.rotation),
-                    &[0.0; 3],
-                    self.point - Vec3(turn.pivot),
-                );
+                let arm = rigid::moved(&rigid::rows(turn.rotation), &[0.0; 3], self.point - Vec3(turn.pivot));
                 mix(Vec3(turn.path[0]), Vec3(turn.path[1])) + Turn::new(Vec3(turn.turn)).rotated(t, arm)
             }
             None => {
-                let [a, b] =
-                    self.frames().map(|f| rigid::moved(&f.rows, &f.translation, self.point));
+                let [a, b] = self.frames().map(|f| rigid::moved(&f.rows, &f.translation, self.point));
                 mix(a, b)
             }
         }
@@ -109,8 +104,7 @@ fn needed(x: &[f64], [a_turns, b_turns]: [bool; 2], gap: f64) -> Option<(MovingR
     b.shift(a.at(t) + way - b.at(t));
     let ([a0, a1], [b0, b1]) = (a.frames(), b.frames());
     let frames = [[&a0, &b0], [&a1, &b1]];
-    let relation =
-        MovingRelation::of([0, 1], frames, [&a.mesh, &b.mesh], [&a.motion(), &b.motion()], gap);
+    let relation = MovingRelation::of([0, 1], frames, [&a.mesh, &b.mesh], [&a.motion(), &b.motion()], gap);
     let single = |v: Vec3<f64>| [v.0.map(|x| x as f32); 3];
     let own = single(a.point)[0];
     let seen = relation.seen(single(b.point));

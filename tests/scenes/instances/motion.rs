@@ -32,7 +32,10 @@ fn steps(
     let step = |id| {
         let [at, by, turn, pivot] = [any(range * size), any(0.4 * size), any(0.3), any(size)];
         let kind = any(3.0)[0].abs() as u32;
-        let start = Pose { rotation: rotation(&mut SmallRng::seed_from_u64(at[0].to_bits())), translation: [0, 1, 2].map(|k| place[k] + at[k]) };
+        let start = Pose {
+            rotation: rotation(&mut SmallRng::seed_from_u64(at[0].to_bits())),
+            translation: [0, 1, 2].map(|k| place[k] + at[k]),
+        };
         let slightly = PoseStep::turning(start, turn, by).about(pivot);
         let end = slightly.end();
         let far = turn.map(|x| 20.0 * x / 1.8);

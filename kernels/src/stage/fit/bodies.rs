@@ -36,13 +36,7 @@ pub fn bodies<B: Block>(block: &mut B, args: &BodiesArgs) {
 /// Bodies in order, and their nodes.
 #[inline(always)]
 pub fn fitted(args: &BodiesArgs) -> Fitted<FrameBox> {
-    Fitted {
-        items: args.order,
-        leaves: args.leaves,
-        nodes: args.nodes,
-        tile: args.tile,
-        above: args.above,
-    }
+    Fitted { items: args.order, leaves: args.leaves, nodes: args.nodes, tile: args.tile, above: args.above }
 }
 
 /// The place of a mesh by a pose.

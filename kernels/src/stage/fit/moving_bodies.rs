@@ -86,12 +86,7 @@ pub fn motion(
 
 /// By how much a body's box grows in the step, beyond boxes at both ends.
 #[inline(always)]
-fn around(
-    mesh: &MeshRecord,
-    frames: &[InstanceFrame; 2],
-    motion: &InstanceMotion,
-    turns: bool,
-) -> f64 {
+fn around(mesh: &MeshRecord, frames: &[InstanceFrame; 2], motion: &InstanceMotion, turns: bool) -> f64 {
     let most = |p: &[f64; 3]| Real::abs(p[0]).greater(Real::abs(p[1])).greater(Real::abs(p[2]));
     let mut size = 0.0;
     for end in 0..2 {

@@ -138,7 +138,8 @@ fn descend<T: Test, Q: Related, B: Block>(
         let ((a, a_count), (b, b_count)) = (below(a, &of_a), below(b, &of_b));
         let most = limit(block, number, &relation);
         let [whole_a, whole_b] =
-            [relation.first_in_both(&of_a.volume), relation.second_in_both(&of_b.volume)].map(|x| T::item(x, most));
+            [relation.first_in_both(&of_a.volume), relation.second_in_both(&of_b.volume)]
+                .map(|x| T::item(x, most));
         block.phase(|lane| {
             let i = lane.lane();
             let mut both = [T::Item::zeroed(); 2];

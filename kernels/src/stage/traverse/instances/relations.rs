@@ -17,8 +17,8 @@
 //! ([`crate::bvh::motion`]). A pair that is left out stays farther apart than `within`.
 
 use crate::abi::{
-    Counters, InstanceTables, MeshRecord, MovingRelation, MovingRelationsArgs, Output, Pair, Relation, RelationsArgs,
-    RelationsWithinArgs, counter,
+    Counters, InstanceTables, MeshRecord, MovingRelation, MovingRelationsArgs, Output, Pair, Relation,
+    RelationsArgs, RelationsWithinArgs, counter,
 };
 use crate::bvh::gap::{CloseInBoth, limit};
 use crate::bvh::relation::{Both, Related};
@@ -66,12 +66,7 @@ fn mesh<L: Lane>(lane: &L, tables: &InstanceTables, body: u32) -> MeshRecord {
 
 /// Whether two nodes overlap.
 #[inline(always)]
-fn overlaps<Q: Related, L: Lane>(
-    lane: &L,
-    tables: &InstanceTables,
-    relation: &Q,
-    [a, b]: [u32; 2],
-) -> bool {
+fn overlaps<Q: Related, L: Lane>(lane: &L, tables: &InstanceTables, relation: &Q, [a, b]: [u32; 2]) -> bool {
     let first = relation.first_in_both(&lane.read(tables.nodes, a).volume);
     first.overlaps(&relation.second_in_both(&lane.read(tables.nodes, b).volume))
 }
