@@ -163,6 +163,23 @@ first=$(echo "${jobs[0]}" | cut -d' ' -f4)
 sed -n "s/^.*info *: \(Compiling entry.*\)/\1/p; s/^.*info *: \(Used.*\)/    \1/p; /spill/p; /error\|warning\|fatal/p" "$work/$first.log"
 cat "$work"/ptxas-*.said 2>/dev/null || true
 [ $failed = 0 ] || die "an assembly fails, or lanes may be apart"
+# A block of 512 lanes has 128 registers for each, or its launch fails. Those with a limit get no more.
+too_large() {
+    awk -v large="$("$here/../kernels/ptx.sh" large)" -v limited="$("$here/../kernels/ptx.sh" registers | tr '\n' ' ')" '
+        /Compiling entry function/ { split($0, part, "\047"); name = part[2] }
+        /Used [0-9]+ registers/ {
+            match($0, /Used [0-9]+/); used = substr($0, RSTART + 5, RLENGTH - 5) + 0
+            n = split(large, starts, " ")
+            for (i = 1; i <= n; i++)
+                if (index(name, starts[i]) == 1 && used > 128 && index(" " limited, " " name " ") == 0) print name, used
+        }' "$1"
+}
+printf "Compiling entry function 'fit_tiles_planted' for 'sm_80'\nUsed 129 registers\n" >"$work/planted.log"
+[ "$(too_large "$work/planted.log")" = "fit_tiles_planted 129" ] || die "a block without registers is not noticed"
+for log in "$work"/ptxas-*.log; do
+    said=$(too_large "$log")
+    [ -z "$said" ] || die "too many registers for a block of 512 lanes: $said"
+done
 for other in "$work"/ptxas-*-not.sass; do
     cmp -s "${other%-not.sass}.sass" "$other" || die "a product and a sum were contracted"
 done

@@ -6,6 +6,7 @@
 #   ptx.sh build OUT    compiles the kernels to OUT, compressed by zstd
 #   ptx.sh stamp        prints the stamp of the sources: what the committed PTX must carry
 #   ptx.sh registers    prints the kernels whose registers are limited, and the limits
+#   ptx.sh large        prints the beginnings of the names of kernels with blocks of 512 lanes
 #   ptx.sh check        is kernels/nearmiss.ptx.zst made from these sources?
 #
 # A device compiler is an rustc that has the core library of nvptx64-nvidia-cuda, or the sources to build it
@@ -190,6 +191,9 @@ build() {
 # The lines of the kernel table with a limit; the host gives it to the driver (`Entry::REGISTERS`).
 registers() { sed -n 's/^ *\([a-z0-9_]*\): .*, registers = \([0-9]*\);$/\1 \2/p' "$root/kernels/src/entry.rs"; }
 
+# Kernels with blocks of 512 lanes, by the beginnings of their names: a GPU has 128 registers for each of these.
+large() { echo "fit_tiles fit_bodies fit_moving_bodies refit_tiles balance_copy"; }
+
 first_line() { zstd -dcq "$1" | sed -n 1p; }
 stamp_of() { first_line "$1" | sed -n 's/^.*, sources \([0-9a-f]*\),.*$/\1/p'; }
 compiler_of() { first_line "$1" | sed -n 's/^.*, sources [0-9a-f]*, //p'; }
@@ -224,6 +228,7 @@ case "${1:-} $#" in
     "build 2") build "$2" ;;
     "stamp 1") stamp ;;
     "registers 1") registers ;;
+    "large 1") large ;;
     "check 1") check ;;
-    *) sed -n '2,9s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+    *) sed -n '2,10s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
 esac

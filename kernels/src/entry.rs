@@ -137,7 +137,7 @@ kernels! {
     traverse_relations: relations::relations, [RelationsArgs], NARROW, 0;
     traverse_nodes: nodes::nodes, [NodesArgs], nodes::LANES, nodes::SHARED, exact = true;
     traverse_instances: instance_triangles::candidates, [InstancesArgs], instance_triangles::LANES, instance_triangles::SHARED, exact = true;
-    fit_moving_bodies: moving_bodies::bodies, [MovingBodiesArgs], fit_of_tiles::LANES, fit_of_tiles::shared_bytes::<bv::FrameBox>(), exact = true;
+    fit_moving_bodies: moving_bodies::bodies, [MovingBodiesArgs], fit_of_tiles::LANES, fit_of_tiles::shared_bytes::<bv::FrameBox>(), exact = true, registers = 128;
     traverse_moving_relations: relations::moving_relations, [MovingRelationsArgs], NARROW, 0;
     traverse_moving_nodes: nodes::moving_nodes, [MovingNodesArgs], nodes::LANES, nodes::SHARED, exact = true;
     traverse_moving_instances: instance_triangles::moving_candidates, [MovingInstancesArgs], instance_triangles::LANES, instance_triangles::SHARED_MOVING, exact = true;

@@ -43,3 +43,34 @@ fn the_script_lists_each_limit_of_registers_and_would_notice_another() {
     }
     std::fs::remove_dir_all(folder).expect("removed");
 }
+
+/// Kernels with blocks of 512 lanes.
+#[derive(Default)]
+struct Large(Vec<&'static str>);
+
+impl Visit for Large {
+    fn kernel<E: Entry>(&mut self) {
+        assert!(E::LANES <= 512, "{}", E::NAME);
+        if E::LANES > 256 {
+            assert!(E::REGISTERS.is_none_or(|limit| limit <= 128), "{}", E::NAME);
+            self.0.push(E::NAME);
+        }
+    }
+}
+
+/// More registers than a block has make a launch fail: `.ci/ptxas.sh` looks at these kernels.
+#[test]
+#[cfg_attr(not(target_os = "linux"), ignore = "kernels/ptx.sh wants GNU tools")]
+fn the_script_names_each_kernel_of_large_blocks() {
+    let mut large = Large::default();
+    visit(&mut large);
+    let done = Command::new(Path::new(ROOT).join("kernels/ptx.sh")).arg("large").output().expect("it runs");
+    let said = String::from_utf8(done.stdout).expect("a text");
+    let names = || said.split_whitespace();
+    let unnamed: Vec<_> =
+        large.0.iter().filter(|kernel| !names().any(|name| kernel.starts_with(name))).collect();
+    assert!(unnamed.is_empty(), "`kernels/ptx.sh large` lacks {unnamed:?}");
+    let idle: Vec<_> =
+        names().filter(|name| !large.0.iter().any(|kernel| kernel.starts_with(name))).collect();
+    assert!(idle.is_empty(), "`kernels/ptx.sh large` has {idle:?}");
+}

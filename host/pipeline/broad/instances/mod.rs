@@ -290,6 +290,7 @@ impl<R: Precision> CandidateSearch<R> for BodyGroups {
 mod tests {
     use super::*;
     use crate::device::emulator::{Emulator, Mode};
+    use crate::pipeline::instances::Instances;
     use crate::query::Query;
     use crate::samples::soup;
     use crate::scene::{Body, Motion, Pose};
