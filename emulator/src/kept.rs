@@ -9,6 +9,7 @@ use std::ops::{Deref, DerefMut};
 type Unit = MaybeUninit<u128>;
 
 /// Memory that a thread keeps.
+#[allow(clippy::vec_box, reason = "a move of the memory itself would copy its columns")]
 #[derive(Default)]
 struct Kept {
     pieces: Vec<Vec<Unit>>,
@@ -72,7 +73,7 @@ pub struct Memory {
 }
 
 /// Words of a block that begins, in debug builds.
-pub const NONSENSE: u64 = 0xbad_bad_bad_bad_bad_b;
+pub const NONSENSE: u64 = 0xbadb_adba_dbad_badb;
 
 /// The memory of a block, in use.
 pub struct OnChip(Option<Box<Memory>>);
