@@ -97,12 +97,12 @@ fn moved(both: &mut Both, motions: &[(BodyId, Motion)]) {
 fn steps_are_those_of_placed_vertices() {
     let mut rng = SmallRng::seed_from_u64(21);
     for (size, place, _) in WORLDS {
-        let kinds = [(Ways::Straight, 24), (Ways::Turning, 9), (Ways::Any, 9)];
+        let kinds = [(Ways::Straight, 24), (Ways::Turning, 9), (Ways::Any, 7)];
+        let mut rows = 0;
         for (ways, count) in kinds {
             let world = (size, place, 3.0);
             let scene = scene(&mut rng, world, count, ways == Ways::Straight);
             let mut both = Both::new(&engine(), &scene);
-            let mut rows = 0;
             for frame in 0..2 {
                 let all = steps(&mut rng, &scene, world, ways);
                 // The second time few are named, the others rest at the end of their steps.
@@ -115,8 +115,8 @@ fn steps_are_those_of_placed_vertices() {
                     assert!(reads(&mut both.own, &query), "{query:?}");
                 }
             }
-            assert!(rows > 30, "{world:?} {ways:?}: {rows}");
         }
+        assert!(rows > 100, "{size} {place:?}: {rows}");
     }
 }
 
@@ -178,14 +178,14 @@ fn geometry_is_that_of_placed_vertices() {
 
 #[test]
 fn any_schedule_finds_them() {
-    let world = WORLDS[0];
+    let world = (1.0, [0.0; 3], 1.5);
     for order in ORDERS {
         let mut rng = SmallRng::seed_from_u64(24);
-        let scene = scene(&mut rng, world, 8, false);
+        let scene = scene(&mut rng, world, 5, false);
         let emulator = Emulator::new(Mode::Sanitizer(order), None).expect("threads");
         let mut both = Both::new(&Device::emulator(emulator), &scene);
-        moved(&mut both, &steps(&mut rng, &scene, world, Ways::Any));
-        for query in [Query::continuous(), Query::earliest(), Query::near(1.0)] {
+        moved(&mut both, &steps(&mut rng, &scene, world, Ways::Turning));
+        for query in [Query::continuous(), Query::earliest(), Query::near(0.1)] {
             let rows = same(&mut both, query).unwrap_or_else(|error| panic!("{order:?}: {error}"));
             assert!(rows > 0, "{order:?} {query:?}");
         }
@@ -196,7 +196,7 @@ fn any_schedule_finds_them() {
 fn boxes_hold_the_step() {
     let mut rng = SmallRng::seed_from_u64(25);
     for world in &WORLDS[..2] {
-        let scene = scene(&mut rng, *world, 24, false);
+        let scene = scene(&mut rng, *world, 12, false);
         let mut detector = Detector::new(engine(), scene.clone()).expect("a detector");
         detector.update(&steps(&mut rng, &scene, *world, Ways::Any)).expect("moved");
         for query in [Query::continuous(), Query::near(0.1)] {

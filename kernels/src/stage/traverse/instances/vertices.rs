@@ -43,24 +43,37 @@ fn place<L: Lane>(lane: &L, args: &CandidateVerticesArgs, frame: u64, triangle: 
     let number = triangle.number(lane, &args.tables);
     let in_scene = lane.read(args.faces, number);
     let in_mesh = lane.read(args.tables.triangles, triangle.place).vertices;
-    for k in 0..3 {
-        let vertex = in_scene[k];
-        let is_there = lane.fetch_load(args.placed, vertex) == frame
-            || lane.exchange(args.placed, vertex, frame) == frame;
-        if is_there {
-            continue;
-        }
-        let at_rest = lane.read(args.tables.vertices, in_mesh[k]).at;
-        let at = |frames: Span<InstanceFrame>| {
-            let frame = lane.read(frames, triangle.body);
-            Point::from(rigid::moved(&frame.rows, &frame.translation, at_rest))
-        };
-        let t0 = at(args.tables.frames);
-        if args.vertices.moving.is_empty() {
-            lane.write(args.vertices.still, vertex, t0);
-        } else {
-            lane.write(args.vertices.moving, vertex, VertexMotion { t0, t1: at(args.ends) });
-        }
-    }
+    // By name: an index that is not known would put both into local memory.
+    let ([x, y, z], [u, v, w]) = (in_scene, in_mesh);
+    place_vertex(lane, args, frame, (triangle.body, x, u));
+    place_vertex(lane, args, frame, (triangle.body, y, v));
+    place_vertex(lane, args, frame, (triangle.body, z, w));
     number
+}
+
+/// Places a vertex of a body, by its numbers in the scene and among those of all meshes, if no lane has
+/// in this frame.
+#[inline(always)]
+fn place_vertex<L: Lane>(
+    lane: &L,
+    args: &CandidateVerticesArgs,
+    frame: u64,
+    (body, vertex, in_mesh): (u32, u32, u32),
+) {
+    let is_there =
+        lane.fetch_load(args.placed, vertex) == frame || lane.exchange(args.placed, vertex, frame) == frame;
+    if is_there {
+        return;
+    }
+    let at_rest = lane.read(args.tables.vertices, in_mesh).at;
+    let at = |frames: Span<InstanceFrame>| {
+        let frame = lane.read(frames, body);
+        Point::from(rigid::moved(&frame.rows, &frame.translation, at_rest))
+    };
+    let t0 = at(args.tables.frames);
+    if args.vertices.moving.is_empty() {
+        lane.write(args.vertices.still, vertex, t0);
+    } else {
+        lane.write(args.vertices.moving, vertex, VertexMotion { t0, t1: at(args.ends) });
+    }
 }
