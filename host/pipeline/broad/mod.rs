@@ -65,8 +65,7 @@ pub struct Placeable {
     pub tile_pairs: Span<NodePair>,
     /// Words of each relation; empty except for queries of pairs of bodies.
     pub words: RelationWords,
-    /// Of distances of bodies, what is left of those that share a point: candidates, and their pairs
-    /// of tiles.
+    /// Candidates that are left of bodies that share a point, and their pairs of tiles: for distances.
     pub left: (Span<Pair>, Span<NodePair>),
 }
 

@@ -60,7 +60,7 @@ fn triangles_at_a_bound_are_never_farther() {
             farther(&p, &q, (relation.slack, length))
         };
         assert!(!is_farther(distance), "{p:?} {q:?} at {distance}");
-        // Where the slack is small against the distance, a bound of nine tenths is refused.
+        // If the slack is small against the distance, a bound of nine tenths is refused.
         if distance > 100.0 * f64::from(relation.slack) {
             all += 1;
             proven += u32::from(is_farther(0.9 * distance));

@@ -45,14 +45,14 @@ pub struct PairSearch {
     /// The words of [`RelationWords`]: bounds, triangles that share a point, nearest triangles. Each
     /// has room for every relation.
     words: [List<u64>; 3],
-    /// Of distances alone.
+    /// Lists of distances; `None` for pairs that share a point.
     close: Option<Close>,
 }
 
 /// The lists of distances, behind those of bodies that share a point.
 struct Close {
     descent: Descent,
-    /// What is left of bodies that share a point: those triangles that do, and undecided ones.
+    /// Triangles of bodies that share a point: those that do, and undecided ones.
     left: List<Pair>,
 }
 
