@@ -178,7 +178,7 @@ fn geometry_is_that_of_placed_vertices() {
 
 #[test]
 fn any_schedule_finds_them() {
-    let world = (1.0, [0.0; 3], 1.5);
+    let world = (1.0, [0.0; 3], 0.7);
     for order in ORDERS {
         let mut rng = SmallRng::seed_from_u64(24);
         let scene = scene(&mut rng, world, 5, false);

@@ -144,7 +144,6 @@ pub fn triangles<Q: Related, B: Block, T: Take<B>>(
     let corners = Pieces::<Q::Seen>::new(block, LANES);
     let names = [block.shared::<u32>(LANES), block.shared::<u32>(LANES)];
     let found = block.shared::<u32>(FOUND);
-    let mut column = block.slot(FrameBox::default());
     let mut verdicts = block.slot(None);
     let (mut run, mut next, mut tests) = (share.first, share.first, 0u64);
     while next < share.end {
@@ -209,19 +208,15 @@ pub fn triangles<Q: Related, B: Block, T: Take<B>>(
         if height == 0 {
             continue;
         }
-        block.phase(|lane| {
-            if lane.lane() < width {
-                *column.of(lane) = columns.get(lane, lane.lane());
-            }
-            lane.meet();
-        });
         let fill = block.cross_own::<Overlap>(
             0..height,
             0,
             |lane, k| rows.get(lane, k),
             |lane| {
-                let end = if lane.lane() < width { height } else { 0 };
-                Own { item: *column.of(lane), name: lane.lane(), end }
+                let is_column = lane.lane() < width;
+                // Place 0 has one: no lane holds a box in registers.
+                let item = columns.get(lane, if is_column { lane.lane() } else { 0 });
+                Own { item, name: lane.lane(), end: if is_column { height } else { 0 } }
             },
             |lane, at, [k, name]| {
                 lane.put(found, at, Candidate::word(if is_turned { [name, k] } else { [k, name] }));
