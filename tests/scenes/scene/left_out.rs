@@ -197,7 +197,7 @@ fn a_list_costs_its_bytes_and_a_launch_behind_a_walk_of_vertices() {
         let (launches, none) = cost(&[]);
         assert_eq!(none, None);
         // All other queries of rigid bodies read instances, which look it up for related bodies.
-        let behind = usize::from(kind == QueryKind::Distance);
+        let behind = u64::from(kind == QueryKind::Distance);
         assert_eq!(cost(&neighbours), (launches + behind, Some(4 * (100 + 1 + 99))), "{kind:?}");
     }
 }

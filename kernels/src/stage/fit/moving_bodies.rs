@@ -88,10 +88,8 @@ pub fn motion(
 #[inline(always)]
 fn around(mesh: &MeshRecord, frames: &[InstanceFrame; 2], motion: &InstanceMotion, turns: bool) -> f64 {
     let most = |p: &[f64; 3]| Real::abs(p[0]).greater(Real::abs(p[1])).greater(Real::abs(p[2]));
-    let mut size = 0.0;
-    for end in 0..2 {
-        size = most(&frames[end].origin).greater(most(&motion.path[end])).greater(size);
-    }
+    let [start, end] = frames.each_ref().map(|frame| most(&frame.origin));
+    let size = start.greater(end).greater(most(&motion.path[0])).greater(most(&motion.path[1]));
     let leaves = if turns { bulge(motion.angle) * motion.reach } else { 0.0 };
     (leaves + motion.skew * motion.reach + SWELL * (size + mesh.radius)) * TURNING_UP
 }
