@@ -29,11 +29,11 @@ fn case(r: &mut SmallRng) -> Case {
     let a = frame(&[one[0], one[1], one[2], two[0]], &[place; 3], &[0.0; 3]).expect("a place");
     let mut b = frame(&[two[1], two[2], one[0], 0.7], &[place; 3], &[0.0; 3]).expect("a place");
     if faces_it {
-        (b, q) = (a, p.map(|v| [v[0], v[1], v[2]]));
+        (b, q) = (a, p);
     }
     let gap = size * 10f64.powi(r.random_range(-4..2));
-    for k in 0..3 {
-        b.translation[k] += gap * shift[k];
+    for (at, by) in b.translation.iter_mut().zip(shift) {
+        *at += gap * by;
     }
     b.origin = at_pose(&b, [0.0; 3]).0;
     let radius = 3f64.sqrt() * size;

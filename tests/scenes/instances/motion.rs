@@ -66,7 +66,7 @@ fn queries(size: f64) -> Vec<Query> {
 /// Whether a query reads instances, and places no other vertices.
 fn reads(detector: &mut Detector, query: &Query) -> bool {
     let plan = detector.plan(query).expect("a plan");
-    let mut kernels = plan.frame.iter().flat_map(|stage| &stage.kernels).map(|kernel| &*kernel.kernel);
+    let mut kernels = plan.frame.iter().flat_map(|stage| &stage.kernels).map(|kernel| kernel.kernel);
     let is_placed = plan.buffer("positions of all vertices").is_some();
     kernels.any(|kernel| kernel == "traverse_vertices") && !is_placed
 }
