@@ -26,13 +26,9 @@ fn the_tables_add_up() {
             plan["launches"].as_u64().expect("a sum")
         );
         assert_eq!(sum(&plan["buffers"], |buffer| &buffer["bytes"]), plan["bytes"].as_u64().expect("a sum"));
-        // Instances have a pose each, fixed ones too; otherwise a rigid body has one for each end.
-        let poses = if question[0] == "--near" { 64 } else { 128 };
-        let placing = if question[0] == "--discrete" {
-            "  no placing of vertices: vertices are placed as they are read\n"
-        } else {
-            "  place        1  vertices where the frame puts them\n"
-        };
+        // Instances have a pose each, fixed ones too; queries of features have two more.
+        let (poses, uploads) = if question[0] == "--discrete" { (128, 1) } else { (384, 2) };
+        let placing = "  no placing of vertices: vertices are placed as they are read\n";
         let up = plan["transfers"].as_array().expect("transfers").iter();
         let up = up.filter(|moved| moved["what"] == "poses of rigid bodies");
         assert_eq!(up.map(|moved| moved["to_device"]["bytes"].as_u64()).collect::<Vec<_>>(), [Some(poses)]);
@@ -42,7 +38,7 @@ fn the_tables_add_up() {
         for part in [
             format!("\na frame: {} launches\n", plan["launches"]),
             format!("\nmemory: {} bytes\n", plan["bytes"]),
-            format!("{poses}   1  to the device: poses of rigid bodies\n"),
+            format!("{poses}   {uploads}  to the device: poses of rigid bodies\n"),
             placing.into(),
             "  no ordering on the device: ".into(),
         ] {

@@ -213,10 +213,9 @@ pub fn triangles<Q: Related, B: Block, T: Take<B>>(
             0,
             |lane, k| rows.get(lane, k),
             |lane| {
-                let is_column = lane.lane() < width;
-                // Place 0 has one: no lane holds a box in registers.
-                let item = columns.get(lane, if is_column { lane.lane() } else { 0 });
-                Own { item, name: lane.lane(), end: if is_column { height } else { 0 } }
+                // The last column for lanes without one: a branch would double the loop over rows.
+                let item = columns.get(lane, lane.lane().min(width - 1));
+                Own { item, name: lane.lane(), end: if lane.lane() < width { height } else { 0 } }
             },
             |lane, at, [k, name]| {
                 lane.put(found, at, Candidate::word(if is_turned { [name, k] } else { [k, name] }));

@@ -302,13 +302,11 @@ pub fn candidates<B: Block>(block: &mut B, args: &InstancesWithinArgs) {
             0..height,
             0,
             |lane, k| rows.get(lane, k),
-            |lane| {
-                let is_column = lane.lane() < width;
-                Own {
-                    item: columns.get(lane, if is_column { lane.lane() } else { 0 }),
-                    name: lane.lane(),
-                    end: if is_column { height } else { 0 },
-                }
+            |lane| Own {
+                // As in `triangles`.
+                item: columns.get(lane, lane.lane().min(width - 1)),
+                name: lane.lane(),
+                end: if lane.lane() < width { height } else { 0 },
             },
             |lane, to, pair| lane.put(found, to, Candidate::word(pair)),
         );
