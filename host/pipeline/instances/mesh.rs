@@ -84,7 +84,7 @@ impl MeshTiles {
         };
         let leaves: Vec<MeshLeaf> = order.iter().zip(&triangles).map(leaf).collect();
         MeshTiles {
-            columns: leaves.chunks(FAN).flat_map(columns).collect(),
+            columns: columns(&leaves),
             record: MeshRecord { centre, radius: ROOT_3 * largest, lo, hi, root: 0, pad: [0; 3] },
             leaves,
             triangles,
@@ -97,10 +97,11 @@ impl MeshTiles {
     }
 }
 
-/// The boxes of a tile, by columns.
-fn columns(leaves: &[MeshLeaf]) -> impl Iterator<Item = u32> {
-    let all: Vec<_> = leaves.iter().map(MeshLeaf::columns).collect();
-    (0..MeshLeaf::COLUMNS as usize).flat_map(move |k| all.clone().into_iter().map(move |leaf| leaf[k]))
+/// The boxes of all tiles, each by columns.
+fn columns(leaves: &[MeshLeaf]) -> Vec<u32> {
+    let column = |tile, k: usize| <[MeshLeaf]>::iter(tile).map(move |leaf| leaf.columns()[k]);
+    let of_tile = |tile| (0..MeshLeaf::COLUMNS as usize).flat_map(move |k| column(tile, k));
+    leaves.chunks(FAN).flat_map(of_tile).collect()
 }
 
 /// The middle of a triangle's box.

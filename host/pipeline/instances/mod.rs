@@ -151,11 +151,13 @@ impl Instances {
     ) -> Result<(), Error> {
         let motion = match &mut self.motion {
             Some(motion) => motion,
-            none => none.insert(InMotion::new(device, bodies, layout, &self.first_vertices)?),
+            none => {
+                let mut motion = InMotion::new(device, bodies, layout, &self.first_vertices)?;
+                motion.put(device, bodies)?;
+                none.insert(motion)
+            }
         };
-        motion.reserve(device, is_at_rest)?;
-        // Those of a new one are none.
-        if motion.differ(bodies) { motion.put(device, bodies) } else { Ok(()) }
+        motion.reserve(device, is_at_rest)
     }
 
     /// Returns motions; `None` before a query of features.
@@ -166,6 +168,10 @@ impl Instances {
     /// Returns whether bodies have other poses than those on the device. By bytes: the sign of a zero
     /// may change the bits of a placed vertex.
     pub fn differ(&self, bodies: &[Body]) -> bool {
+        if let Some(motion) = &self.motion {
+            // It has this pose and the one at the end.
+            return motion.differ(bodies);
+        }
         let is_other =
             |(held, body): (&PoseRecord, &Body)| bytemuck::bytes_of(held) != bytemuck::bytes_of(&pose(body));
         self.placed.iter().zip(bodies).any(is_other)

@@ -123,13 +123,8 @@ impl<R: Precision> SceneMemory<R> {
     /// # Errors
     /// [`Error::OutOfMemory`].
     pub fn reserve_pairs(&mut self, capacity: usize) -> Result<(), Error> {
-        let device = self.device.clone();
-        self.lists_of_pairs().try_for_each(|list| list.reserve(&device, capacity))
-    }
-
-    /// Returns the lists of candidates; the narrow phase of vertices reads the last.
-    pub fn lists_of_pairs(&mut self) -> impl Iterator<Item = &mut List<Pair>> {
-        [&mut self.pairs].into_iter().chain(&mut self.allowed)
+        self.pairs.reserve(&self.device, capacity)?;
+        self.allowed.iter_mut().try_for_each(|list| list.reserve(&self.device, capacity))
     }
 
     /// Returns all lists of a traversal by a broad phase.
