@@ -2,23 +2,10 @@
 
 use super::{
     InstanceTables, InstancesArgs, NearestHit, NodePair, NodesArgs, Output, Pair, Point, Relation,
-    RelationsArgs, Span,
+    RelationsArgs, Span, TouchingFlags,
 };
 use crate::math::Real;
 use bytemuck::Zeroable;
-
-impl TouchingArgs {
-    /// Only the first pair of bodies is wanted.
-    pub const FIRST: u32 = 1;
-    /// The first pair of triangles of each pair of bodies is wanted, not a flag.
-    pub const KEYS: u32 = 2;
-
-    /// Whether this is wanted.
-    #[inline(always)]
-    pub const fn has(&self, what: u32) -> bool {
-        self.what & what != 0
-    }
-}
 
 arguments! {
     /// Words of each relation. All begin as 0 and only grow.
@@ -59,8 +46,8 @@ arguments! {
         of: InstancesArgs,
         /// Words of each relation.
         words: RelationWords,
-        /// [`TouchingArgs::FIRST`], [`TouchingArgs::KEYS`], or 0.
-        what: u32,
+        /// What is wanted.
+        flags: TouchingFlags,
         /// Zero.
         pad: u32,
     }

@@ -48,6 +48,13 @@ flags! {
         /// Outsized triangles behind all others of their body.
         APART,
     }
+    /// Flags of [`TouchingArgs`](super::TouchingArgs).
+    TouchingFlags {
+        /// Only the first pair of bodies is wanted.
+        FIRST,
+        /// The first pair of triangles of each pair of bodies is wanted, not a flag.
+        KEYS,
+    }
     /// Flags of every traversal: [`TraverseArgs`](super::TraverseArgs),
     /// [`PairArgs`](super::PairArgs).
     ///

@@ -27,8 +27,8 @@ impl FilterArgs {
     /// Whether triangles below one node may meet triangles below the other. Two bodies must share
     /// an environment, or one is in every environment. Each must be in a group that the other
     /// meets. A body meets itself by its own flag, for any groups. Pairs of bodies that are left out
-    /// are not looked up: see [`FilterArgs::leaves_out`]. A refusal for two nodes holds for all below them: environments
-    /// are ranges of leaves, and a hub of a node is one of all below it.
+    /// are not looked up: see [`FilterArgs::leaves_out`]. A refusal for two nodes holds for all below
+    /// them: environments are ranges of leaves, and a hub of a node is one of all below it.
     #[inline(always)]
     pub fn allows<L: Lane>(&self, lane: &L, p: NodeFilter, q: NodeFilter) -> bool {
         if self.nodes.is_empty() {
@@ -50,9 +50,7 @@ impl FilterArgs {
         let [p, q] = [p, q].map(|filter| lane.read(self.bodies, filter.who & NodeFilter::NUMBER));
         (p.group & q.mask != 0) & (q.group & p.mask != 0)
     }
-}
 
-impl FilterArgs {
     /// Whether two nodes are of one body each, and these are a pair that is left out. Walks that do
     /// not look it up list candidates of such a pair, and [`crate::stage::traverse::left_out`] drops
     /// them.

@@ -176,20 +176,8 @@ impl Relation {
         [one(0), one(1), one(2)]
     }
 
-    /// Around vertices of the second in the frame of the first, their errors included.
-    #[inline(always)]
-    pub fn around(&self, corners: &[[f32; 3]; 3]) -> FrameBox {
-        if self.slack == f32::INFINITY {
-            return EVERYTHING;
-        }
-        let FrameBox { lo, hi } = corners_box(corners);
-        let one = |k: usize| (lo[k] - self.slack, hi[k] + self.slack);
-        let (x, y, z) = (one(0), one(1), one(2));
-        FrameBox { lo: [x.0, y.0, z.0], hi: [x.1, y.1, z.1] }
-    }
-
-    /// A triangle of the second in the frame of the first, and [`Relation::around`] it. With the
-    /// bits of these, in vectors of four.
+    /// A triangle of the second in the frame of the first, with the bits of [`Relation::to_first`], and
+    /// around it, its errors included. In vectors of four.
     #[inline(always)]
     pub fn triangle_to_first(&self, corners: &[[f32; 3]; 3]) -> ([[f32; 3]; 3], FrameBox) {
         let column = |k: usize| [self.turn[0][k], self.turn[1][k], self.turn[2][k], 0.0];

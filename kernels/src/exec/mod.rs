@@ -22,6 +22,7 @@
 //! example. That step must not wait itself. No lane waits for the end of a phase, nor for a block
 //! that may not have started: blocks may run in sequence.
 
+pub mod entries;
 mod memory;
 mod output;
 pub mod ptx;

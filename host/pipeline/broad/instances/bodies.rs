@@ -14,7 +14,7 @@ use crate::pipeline::precision::Precision;
 use crate::query::Query;
 use nearmiss_kernels::abi::{
     InstancesWithinArgs, NodesWithinArgs, Output, Pair, RelationWords, RelationsArgs, RelationsWithinArgs,
-    Span, TouchingArgs, counter,
+    Span, TouchingArgs, TouchingFlags, counter,
 };
 use nearmiss_kernels::entry;
 
@@ -90,19 +90,19 @@ impl PairSearch {
         RelationWords { least, touching, first, within }
     }
 
-    /// Finds related bodies that share a point: `what` of [`TouchingArgs`]. Lists what is left.
+    /// Finds related bodies that share a point. Lists what is left.
     fn touching<R: Precision>(
         &mut self,
         given: &BroadContext<R>,
         args: &RelationsArgs,
-        (what, left): (u32, Output<Pair>),
+        (flags, left): (TouchingFlags, Output<Pair>),
     ) -> Result<(), Error> {
         let device = given.device;
         let descent = &mut self.bodies.descent;
         let (relations, pairs) = ((args.relations, args.counters), self.bodies.relations.capacity());
         descent.run(given, relations, pairs, |args| striding::<entry::traverse_nodes>(device, args))?;
         let of = descent.triangles(args, left);
-        striding::<entry::traverse_touching>(device, &TouchingArgs { of, words: self.words(), what, pad: 0 })
+        striding::<entry::traverse_touching>(device, &TouchingArgs { of, words: self.words(), flags, pad: 0 })
     }
 
     /// Lists candidates of related bodies that are not known to share a point.
@@ -172,15 +172,15 @@ impl<R: Precision> CandidateSearch<R> for PairSearch {
         match self.wanted {
             Wanted::Touching { only_first } => {
                 launch::striding::<entry::traverse_relations>(device, room, &args)?;
-                let what = if only_first { TouchingArgs::FIRST } else { 0 };
-                self.touching(given, &args, (what, candidates.pairs))
+                let flags = TouchingFlags::FIRST.when(only_first);
+                self.touching(given, &args, (flags, candidates.pairs))
             }
             Wanted::Within(_) => {
                 let of = RelationsWithinArgs { of: args, words: self.words() };
                 launch::striding::<entry::traverse_relations_within>(device, room, &of)?;
                 let close = self.close.as_ref().ok_or_else(without_lists)?;
                 let left = close.left.output(candidates.counters);
-                self.touching(given, &args, (TouchingArgs::KEYS, left))?;
+                self.touching(given, &args, (TouchingFlags::KEYS, left))?;
                 self.within(given, &args, candidates)
             }
         }

@@ -25,8 +25,8 @@
 //!          nothing depends on the schedule.
 //! Room     lists: counted past the end, grown, run again. Words keep their values: relations have
 //!          the same numbers, and a word only says what is true of its bodies.
-//! Cost     8 B a candidate, 500 B gathered. 600 operations for all signs, if boxes overlap. 4,000
-//!          for a distance, if the boxes are nearer than the best known; thousands for exact signs.
+//! Cost     8 B a candidate, 500 B gathered. 4,000 operations for a distance, if the boxes are nearer
+//!          than the best known; thousands for exact signs.
 
 use super::{append_each, stride};
 use crate::abi::{BodiesNarrowArgs, NearestHit, Pair};

@@ -129,7 +129,7 @@ in_memory!(Start, true, moving, |found| found.t0.at, boxes_apart);
 
 /// Whether the boxes of two triangles are apart.
 #[inline(always)]
-pub fn boxes_apart<R: Real>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> bool {
+fn boxes_apart<R: Real>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> bool {
     let ends = |[x, y, z]: &[Vec3<R>; 3]| [x.lesser(*y).lesser(*z), x.greater(*y).greater(*z)];
     let ([p_lo, p_hi], [q_lo, q_hi]) = (ends(p), ends(q));
     let apart = |k: usize| (p_hi[k] < q_lo[k]) | (q_hi[k] < p_lo[k]);

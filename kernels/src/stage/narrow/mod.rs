@@ -39,7 +39,8 @@ pub mod turning;
 
 use crate::abi::{BodyTolerance, DiscreteArgs, Output, Pair, Point, Positions, RungArgs, Span, earliest};
 use crate::bvh::course::moving;
-use crate::exec::{ALONE, Block, Lane, RowMap, Slot};
+use crate::exec::entries::{Entries, append_each, stride};
+use crate::exec::{ALONE, Block, Lane, RowMap};
 use crate::math::{Real, Vec3};
 use crate::prim::cubic::Moving;
 use crate::prim::inclusion::{Params, Verdict};
@@ -175,18 +176,6 @@ fn expect<L: Lane>(lane: &L, pairs: &Output<Pair>, later: u32, count: u32, prefe
     }
 }
 
-/// Runs `body` for each stretch of `count` items of a block, with the number of the first item. A
-/// lane has one item. A grid of any size has shares ([`Block::share`]).
-#[inline(always)]
-fn stride<B: Block>(block: &mut B, count: u32, mut body: impl FnMut(&mut B, u32)) {
-    let share = block.share(count, block.lanes());
-    let mut base = share.first;
-    while base < share.end {
-        body(block, base);
-        base += share.step;
-    }
-}
-
 /// Appends the pairs of a block that meet to the contacts, and those that are not decided to the
 /// uncertain. `pair_of` returns a lane's pair if it is of that kind: one that meets, or not.
 #[inline(always)]
@@ -200,25 +189,6 @@ fn sort_out<R: Real, B: Block>(
         block.phase(|lane| entries.set(lane, pair_of(lane, is_meeting)));
         entries.append(block, list);
     }
-}
-
-/// Runs `body` for each of `count` items, a lane each, in a grid of any size. `Some` entry is
-/// appended to `to`. The counter goes past the end of the list: its final value is the exact
-/// demand.
-fn append_each<B: Block, T: bytemuck::Pod>(
-    block: &mut B,
-    count: u32,
-    to: Output<T>,
-    mut body: impl FnMut(&B::Lane, u32) -> Option<T>,
-) {
-    let mut entries = Entries::new(block);
-    stride(block, count, |block, base| {
-        block.phase(|lane| {
-            let i = base + lane.lane();
-            entries.set(lane, if i < count { body(lane, i) } else { None });
-        });
-        entries.append(block, to);
-    });
 }
 
 /// As [`append_each`], by a map of rows: an item is appended if its row is not mapped to 0.
@@ -245,35 +215,4 @@ fn append_mapped<B: Block, M: RowMap, T: bytemuck::Pod, I: Copy>(
         );
         entries.append(block, to);
     });
-}
-
-/// The entries that lanes of a block may append.
-struct Entries<B: Block, T: bytemuck::Pod> {
-    entries: B::Slot<Option<T>>,
-    places: B::Slot<u32>,
-}
-
-impl<B: Block, T: bytemuck::Pod> Entries<B, T> {
-    fn new(block: &B) -> Self {
-        Entries { entries: block.slot(None), places: block.slot(0) }
-    }
-
-    /// The entry of a lane; the last call of a phase.
-    #[inline(always)]
-    fn set(&mut self, lane: &B::Lane, entry: Option<T>) {
-        *self.places.of(lane) = entry.is_some() as u32;
-        *self.entries.of(lane) = entry;
-        lane.meet();
-    }
-
-    /// Appends the entries, as far as there is room.
-    fn append(&mut self, block: &mut B, to: Output<T>) {
-        let start = to.append(block, &mut self.places);
-        block.phase(|lane| {
-            let place = start + *self.places.of(lane) as u64;
-            if let Some(entry) = *self.entries.of(lane) {
-                to.put(lane, place, entry);
-            }
-        });
-    }
 }

@@ -11,34 +11,15 @@
 
 use crate::abi::LeftOutArgs;
 use crate::bvh::filter::{holder, is_left_out};
-use crate::exec::{Block, Lane, Slot};
+use crate::exec::entries::append_each;
+use crate::exec::{Block, Lane};
 
 /// The pairs that are allowed.
 pub fn left_out<B: Block>(block: &mut B, args: &LeftOutArgs) {
-    let (count, lanes) = (args.pairs.listed(block), block.lanes());
-    let mut found = block.slot(None);
-    let mut places = block.slot(0u32);
-    let mut base = block.block() * lanes;
-    while base < count {
-        block.phase(|lane| {
-            let i = base + lane.lane();
-            let own = (i < count).then(|| args.pairs.get(lane, i)).filter(|pair| {
-                let of = |triangle: u32| {
-                    holder(args.bodies.len(), triangle, |k| lane.read(args.bodies, k).triangle)
-                };
-                !is_left_out(of(pair.a), of(pair.b), |k| lane.read(args.left_out, k))
-            });
-            *places.of(lane) = own.is_some() as u32;
-            *found.of(lane) = own;
-            lane.meet();
-        });
-        let start = args.allowed.append(block, &mut places);
-        block.phase(|lane| {
-            if let Some(pair) = *found.of(lane) {
-                args.allowed.put(lane, start + *places.of(lane) as u64, pair);
-            }
-            lane.meet();
-        });
-        base += block.blocks() * lanes;
-    }
+    let count = args.pairs.listed(block);
+    append_each(block, count, args.allowed, |lane, i| {
+        let pair = args.pairs.get(lane, i);
+        let of = |triangle: u32| holder(args.bodies.len(), triangle, |k| lane.read(args.bodies, k).triangle);
+        (!is_left_out(of(pair.a), of(pair.b), |k| lane.read(args.left_out, k))).then_some(pair)
+    });
 }

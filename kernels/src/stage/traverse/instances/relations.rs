@@ -23,7 +23,8 @@ use crate::abi::{
 use crate::bvh::filter::is_left_out;
 use crate::bvh::gap::{CloseInBoth, limit};
 use crate::bvh::relation::{Both, Related};
-use crate::exec::{Block, Lane, Slot};
+use crate::exec::entries::append_each;
+use crate::exec::{Block, Lane};
 
 /// Pairs of bodies whose root boxes meet.
 pub fn relations<B: Block>(block: &mut B, args: &RelationsArgs) {
@@ -81,34 +82,12 @@ fn list<Q: Related, B: Block>(
     counters: Counters,
     of: impl Fn(&B::Lane, Pair) -> Option<Q>,
 ) {
-    let (count, lanes) = (pairs.listed(block), block.lanes());
-    let share = block.share(count, lanes);
-    if share.is_empty() {
-        return;
-    }
-    let mut found = block.slot(None);
-    let mut places = block.slot(0u32);
-    let mut base = share.first;
-    while base < share.end {
-        block.phase(|lane| {
-            let i = base + lane.lane();
-            let pair = (i < share.end).then(|| pairs.get(lane, i));
-            let is_listed =
-                |pair: &Pair| !left_out.is_empty() && is_left_out(pair.a, pair.b, |k| lane.read(left_out, k));
-            let own = pair.filter(|pair| !is_listed(pair)).and_then(|pair| of(lane, pair));
-            *places.of(lane) = own.is_some() as u32;
-            *found.of(lane) = own;
-            lane.meet();
-        });
-        let start = relations.append(block, &mut places);
-        block.phase(|lane| {
-            if let Some(relation) = *found.of(lane) {
-                relations.put(lane, start + *places.of(lane) as u64, relation);
-            }
-            lane.meet();
-        });
-        base += share.step;
-    }
+    let count = pairs.listed(block);
+    append_each(block, count, relations, |lane, i| {
+        let pair = pairs.get(lane, i);
+        let is_listed = !left_out.is_empty() && is_left_out(pair.a, pair.b, |k| lane.read(left_out, k));
+        if is_listed { None } else { of(lane, pair) }
+    });
     if block.block() == 0 {
         counters.add_once(block, counter::STEPS, count.into());
     }

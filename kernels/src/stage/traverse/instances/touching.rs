@@ -6,9 +6,9 @@
 //! Before   relations and pairs of tiles are listed. Words are 0, and so is the first pair.
 //! After    a word is not 0 ⇒ the bodies of its relation share a point.
 //!          Bodies that share a point, with a word that is 0, have a candidate that shares a point.
-//!          [`TouchingArgs::FIRST`]: both hold of the first such bodies. A pair behind a known one
+//!          [`TouchingFlags::FIRST`]: both hold of the first such bodies. A pair behind a known one
 //!          is skipped, the first never.
-//!          [`TouchingArgs::KEYS`]: a word is the key of two triangles that share a point, and those
+//!          [`TouchingFlags::KEYS`]: a word is the key of two triangles that share a point, and those
 //!          are candidates. So is each pair before them that signs in f64 do not decide.
 //!          Which other candidates are listed depends on the schedule.
 //! Room     `pairs` may be too short: counters go on, the host grows it and runs again.
@@ -17,7 +17,7 @@
 //!          least number. Triangles behind the first of a known pair are no rows.
 
 use super::triangles::{ALL, LANES, Take, triangles};
-use crate::abi::{Candidate, InstanceTables, InstancesArgs, NodePair, TouchingArgs, counter};
+use crate::abi::{Candidate, InstanceTables, InstancesArgs, NodePair, TouchingArgs, TouchingFlags, counter};
 use crate::bvh::placing::{APART, MEET, Signs, first_of, key, triangles_of};
 use crate::exec::{Block, Lane, OPEN, Shared, Slot};
 
@@ -52,13 +52,13 @@ impl<B: Block> Take<B> for Decide<'_, B> {
             if lane.lane() == 0 {
                 let known = lane.fetch_load(args.words.touching, tiles.relation);
                 let (mut most, mut is_over) = (ALL, known != 0);
-                if args.has(TouchingArgs::KEYS) && known != 0 {
+                if args.flags.has(TouchingFlags::KEYS) && known != 0 {
                     let least = [tiles.a, tiles.b].map(|tile| lane.read(args.of.tables.nodes, tile).first);
                     is_over = known > key_of(lane, &args.of.tables, bodies, least);
                     // A triangle behind that of the known pair begins no earlier pair.
                     most = first_of(known) - lane.read(args.of.tables.bodies, bodies[0]).triangle;
                 }
-                let behind = args.has(TouchingArgs::FIRST)
+                let behind = args.flags.has(TouchingFlags::FIRST)
                     && args.of.counters.look(lane, counter::FIRST_BODIES) > key(bodies[0], bodies[1]);
                 lane.put(self.words, 0, (is_over | behind) as u32);
                 lane.put(self.words, 1, most);
@@ -76,7 +76,8 @@ impl<B: Block> Take<B> for Decide<'_, B> {
         found: Shared<u32>,
         fits: u32,
     ) {
-        let (tables, words, has_keys) = (&args.tables, self.args.words, self.args.has(TouchingArgs::KEYS));
+        let (tables, words, has_keys) =
+            (&args.tables, self.args.words, self.args.flags.has(TouchingFlags::KEYS));
         let mut at = 0;
         while at < fits {
             block.map_rows(
@@ -112,7 +113,7 @@ impl<B: Block> Take<B> for Decide<'_, B> {
                 block.phase(|lane| {
                     if lane.lane() == 0 {
                         lane.fetch_max(words.touching, tiles.relation, FLAG);
-                        if self.args.has(TouchingArgs::FIRST) {
+                        if self.args.flags.has(TouchingFlags::FIRST) {
                             args.counters.raise(lane, counter::FIRST_BODIES, key(bodies[0], bodies[1]));
                         }
                     }

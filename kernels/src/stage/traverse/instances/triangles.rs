@@ -14,20 +14,21 @@
 //!          pair.
 
 use crate::abi::{
-    Candidate, InstancesArgs, MeshLeaf, MovingInstancesArgs, MovingRelation, NONE, NodePair, Output, Pair,
-    Relation, counter,
+    Candidate, InstanceTables, InstancesArgs, MeshLeaf, MovingInstancesArgs, MovingRelation, NONE, NodePair,
+    Output, Pair, Relation, counter,
 };
 use crate::bv::FrameBox;
 use crate::bvh::pieces::Pieces;
 use crate::bvh::relation::Related;
 use crate::bvh::tiles::TILE;
 use crate::exec::{Block, Lane, Own, PairTest, RowMap, Shared, Slot};
+use bytemuck::Pod;
 use core::marker::PhantomData;
 
 /// Lanes of a block.
 pub const LANES: u32 = TILE;
 /// Words of a tile's boxes, by columns.
-pub const COLUMNS: u32 = MeshLeaf::COLUMNS * TILE;
+const COLUMNS: u32 = MeshLeaf::COLUMNS * TILE;
 /// Pairs of triangles of two tiles.
 const FOUND: u32 = LANES * LANES;
 /// Corners of a triangle.
@@ -42,7 +43,7 @@ const fn shared_bytes<Q: Related>() -> u32 {
 }
 
 /// Whether boxes overlap.
-pub struct Overlap;
+struct Overlap;
 
 impl PairTest for Overlap {
     type Item = FrameBox;
@@ -182,10 +183,7 @@ pub fn triangles<Q: Related, B: Block, T: Take<B>>(
         if of_a == 0 {
             continue;
         }
-        let nearly =
-            block.select_columns::<Overlap>(tables.columns, pair.b * COLUMNS, &in_second, |lane, at| {
-                lane.put(names[1], at, lane.lane());
-            });
+        let nearly = overlapping(block, tables, pair.b, &in_second, names[1]);
         let of_b = block.select(
             nearly,
             |lane| {
@@ -212,11 +210,7 @@ pub fn triangles<Q: Related, B: Block, T: Take<B>>(
             0..height,
             0,
             |lane, k| rows.get(lane, k),
-            |lane| {
-                // The last column for lanes without one: a branch would double the loop over rows.
-                let item = columns.get(lane, lane.lane().min(width - 1));
-                Own { item, name: lane.lane(), end: if lane.lane() < width { height } else { 0 } }
-            },
+            |lane| column(lane, columns, width, height),
             |lane, at, [k, name]| {
                 lane.put(found, at, Candidate::word(if is_turned { [name, k] } else { [k, name] }));
             },
@@ -232,15 +226,37 @@ pub fn triangles<Q: Related, B: Block, T: Take<B>>(
                 Q::row(lane.read(tables.triangles, place).corners, corners.get(lane, q))
             },
             |_, verdict| verdict == MAY_MEET,
-            |lane, [p, q]| [lane.get(names[0], p), lane.get(names[1], q)],
+            names,
         );
         to.take(block, args, (unit, relation.bodies(), pair), found, fits);
     }
     args.counters.add_once(block, counter::STEPS, tests);
 }
 
+/// Puts the places of a tile's triangles whose boxes overlap a volume. Returns how many.
+#[inline(always)]
+pub fn overlapping<B: Block>(
+    block: &mut B,
+    tables: &InstanceTables,
+    tile: u32,
+    volume: &FrameBox,
+    names: Shared<u32>,
+) -> u32 {
+    block.select_columns::<Overlap>(tables.columns, tile * COLUMNS, volume, |lane, at| {
+        lane.put(names, at, lane.lane());
+    })
+}
+
+/// A lane's column of at least one, against all rows. The last for lanes without one: a branch would
+/// double the loop over rows.
+#[inline(always)]
+pub fn column<T: Pod, L: Lane>(lane: &L, columns: Pieces<T>, width: u32, height: u32) -> Own<T> {
+    let item = columns.get(lane, lane.lane().min(width - 1));
+    Own { item, name: lane.lane(), end: if lane.lane() < width { height } else { 0 } }
+}
+
 /// Maps collected pairs of triangles, and keeps some, in their order. Full warps. `gather` reads the
-/// corners of a pair, `named` gives those kept their places in the tiles. Returns how many.
+/// corners of a pair. Those kept get their places in the tiles, by `names`. Returns how many.
 #[inline(always)]
 pub fn sift<B: Block, M: RowMap>(
     block: &mut B,
@@ -249,7 +265,7 @@ pub fn sift<B: Block, M: RowMap>(
     verdicts: &mut B::Slot<Option<(u32, u32)>>,
     mut gather: impl FnMut(&B::Lane, [u32; 2]) -> M::Row,
     mut keeps: impl FnMut(&B::Lane, u32) -> bool,
-    mut named: impl FnMut(&B::Lane, [u32; 2]) -> [u32; 2],
+    names: [Shared<u32>; 2],
 ) -> u32 {
     let (mut at, mut fits) = (0, 0);
     while at < fill {
@@ -270,7 +286,9 @@ pub fn sift<B: Block, M: RowMap>(
                 None => (false, 0),
             },
             |lane, place, word| {
-                lane.put(found, fits + place, Candidate::word(named(lane, Candidate::of_word(word))));
+                let [p, q] = Candidate::of_word(word);
+                let places = [lane.get(names[0], p), lane.get(names[1], q)];
+                lane.put(found, fits + place, Candidate::word(places));
             },
         );
         at += LANES;

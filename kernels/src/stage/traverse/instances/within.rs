@@ -19,7 +19,7 @@
 //! Cost     `bounds` 150 operations a pair. `corners` 96 distances of points a pair of tiles.
 //!          `candidates` 200 operations in f32 a pair of triangles whose boxes are near.
 
-use super::triangles::{COLUMNS, Corners, Overlap, list, sift};
+use super::triangles::{Corners, column, list, overlapping, sift};
 use crate::abi::{
     Candidate, InstancesWithinArgs, MeshNode, NONE, NodePair, NodesWithinArgs, Relation, RelationWords,
     counter,
@@ -28,7 +28,7 @@ use crate::bv::FrameBox;
 use crate::bvh::gap::{Close, apart, farthest, limit};
 use crate::bvh::pieces::Pieces;
 use crate::bvh::tiles::TILE;
-use crate::exec::{Block, Lane, Own, PairTest, RowMap, Shared};
+use crate::exec::{Block, Lane, PairTest, RowMap, Shared};
 use crate::math::{Real, Vec3};
 use crate::prim::planes;
 use bytemuck::Zeroable;
@@ -247,12 +247,7 @@ pub fn candidates<B: Block>(block: &mut B, args: &InstancesWithinArgs) {
         // Boxes that overlap a larger one first: of all triangles of a tile at once.
         let grown = |volume| grown(volume, length + slack);
         let (in_second, in_first) = (at.relation.of_first(&a.volume).second, b.volume);
-        let nearly = block.select_columns::<Overlap>(
-            tables.columns,
-            at.pair.a * COLUMNS,
-            &grown(in_first),
-            |lane, to| lane.put(names[0], to, lane.lane()),
-        );
+        let nearly = overlapping(block, tables, at.pair.a, &grown(in_first), names[0]);
         let height = block.select(
             nearly,
             |lane| {
@@ -268,12 +263,7 @@ pub fn candidates<B: Block>(block: &mut B, args: &InstancesWithinArgs) {
         if height == 0 {
             continue;
         }
-        let nearly = block.select_columns::<Overlap>(
-            tables.columns,
-            at.pair.b * COLUMNS,
-            &grown(in_second),
-            |lane, to| lane.put(names[1], to, lane.lane()),
-        );
+        let nearly = overlapping(block, tables, at.pair.b, &grown(in_second), names[1]);
         let width = block.select(
             nearly,
             |lane| {
@@ -302,12 +292,7 @@ pub fn candidates<B: Block>(block: &mut B, args: &InstancesWithinArgs) {
             0..height,
             0,
             |lane, k| rows.get(lane, k),
-            |lane| Own {
-                // As in `triangles`.
-                item: columns.get(lane, lane.lane().min(width - 1)),
-                name: lane.lane(),
-                end: if lane.lane() < width { height } else { 0 },
-            },
+            |lane| column(lane, columns, width, height),
             |lane, to, pair| lane.put(found, to, Candidate::word(pair)),
         );
         let map = Between { slack, length };
@@ -328,7 +313,7 @@ pub fn candidates<B: Block>(block: &mut B, args: &InstancesWithinArgs) {
                 }
                 is_kept
             },
-            |lane, [p, q]| [lane.get(names[0], p), lane.get(names[1], q)],
+            names,
         );
         if fits == 0 {
             continue;
