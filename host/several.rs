@@ -2,6 +2,7 @@
 
 mod cuts;
 mod interrupted;
+mod left_out;
 mod tiles;
 
 use crate::contacts::{Answer, Contacts, Located};
@@ -220,21 +221,6 @@ impl MultiDetector {
         self.each(|detector| detector.replace(id, body.clone()))?;
         self.divisions.clear();
         Ok(())
-    }
-
-    /// As [`Detector::leave_out`].
-    ///
-    /// # Errors
-    /// As there.
-    pub fn leave_out(&mut self, pairs: &[[BodyId; 2]]) -> Result<(), Error> {
-        self.each(|detector| detector.leave_out(pairs))?;
-        self.divisions.clear();
-        Ok(())
-    }
-
-    /// As [`Detector::left_out`].
-    pub fn left_out(&self) -> &[[BodyId; 2]] {
-        self.parts[0].left_out()
     }
 
     /// As [`Detector::geometry`].

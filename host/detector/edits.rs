@@ -5,11 +5,12 @@ use super::engine::fits;
 use crate::error::Error;
 #[cfg(doc)]
 use crate::scene::Scene;
-use crate::scene::{Body, BodyId};
+use crate::scene::{Body, BodyId, Excluded, Exclusions};
 
 impl Detector {
     /// Replaces a body by another, of any mesh, under its number, from the next frame on. It keeps
-    /// the pairs that are left out. Cost: as of [`Detector::new`], at the next frame.
+    /// the pairs of bodies that are left out. It loses its exclusions, whose numbers of vertices and
+    /// faces may mean others now: [exclude](Detector::exclude) again. Cost: as of [`Detector::new`], at the next frame.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] for a body that is not in the scene, and for self-collision of a
@@ -21,6 +22,7 @@ impl Detector {
         self.fits(Some(old), &body)?;
         self.download_positions()?;
         *self.scene.get_mut(id).ok_or_else(|| empty(id))? = body;
+        self.scene.excluded.forget(id);
         self.changed();
         self.placed.forget(id);
         Ok(())
@@ -43,7 +45,7 @@ impl Detector {
     }
 
     /// Removes a body from the scene, from the next frame on, and its pairs in the list of those
-    /// that are left out. Other bodies keep their numbers. Cost: as of [`Detector::new`], at the next frame.
+    /// that are left out, and its exclusions. Other bodies keep their numbers. Cost: as of [`Detector::new`], at the next frame.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] for a body that is not in the scene.
@@ -75,6 +77,36 @@ impl Detector {
     /// As [`Scene::left_out`].
     pub fn left_out(&self) -> &[[BodyId; 2]] {
         self.scene.left_out()
+    }
+
+    /// Replaces the exclusions of a body, from the next frame on: see [`Scene::exclude`]. Cost: as of
+    /// [`Detector::new`], at the next frame. If they are the same, nothing changes. Others end the
+    /// preparation of submissions.
+    ///
+    /// # Errors
+    /// As of [`Scene::exclude`]. On an error nothing has changed.
+    pub fn exclude(&mut self, id: BodyId, exclusions: Exclusions) -> Result<(), Error> {
+        let all = self.scene.with_exclusions(id, exclusions)?;
+        self.set_excluded(all)
+    }
+
+    /// Replaces the pairs of vertices of two bodies that are left out, from the next frame on: see
+    /// [`Scene::exclude_pairs`]. Cost: as of [`Detector::exclude`].
+    ///
+    /// # Errors
+    /// As of [`Scene::exclude_pairs`]. On an error nothing has changed.
+    pub fn exclude_pairs(&mut self, bodies: [BodyId; 2], pairs: &[[u32; 2]]) -> Result<(), Error> {
+        let all = self.scene.with_excluded_pairs(bodies, pairs)?;
+        self.set_excluded(all)
+    }
+
+    fn set_excluded(&mut self, all: Excluded) -> Result<(), Error> {
+        if all != self.scene.excluded {
+            self.download_positions()?;
+            self.scene.excluded = all;
+            self.changed();
+        }
+        Ok(())
     }
 
     /// Checks that there is room for a body, in place of an old one if there is one.

@@ -9,8 +9,8 @@ use crate::scene::{Body, BodyKind};
 
 impl Detector {
     /// Whether the scene's bodies can be read as instances. All bodies with triangles must be rigid
-    /// or fixed, with poses that the host has, and none is tested against itself. Shares, slices and
-    /// submissions read vertices.
+    /// or fixed, with poses that the host has, and none is tested against itself. Shares, slices,
+    /// submissions and scenes that exclude pairs of features read vertices.
     fn allows_instances(&self) -> bool {
         let bodies = self.scene.bodies();
         let mut solid = bodies.iter().filter(|body| body.face_count() > 0);
@@ -21,6 +21,7 @@ impl Detector {
             && solid.clone().any(|body| body.kind() == BodyKind::Rigid)
             && solid.all(|body| body.kind() != BodyKind::Deformable && !body.self_collides())
             && !bodies.iter().any(Body::is_device_resident)
+            && self.scene.excluded.is_empty()
     }
 
     /// Chooses for the next pipeline.

@@ -57,9 +57,10 @@ impl Layouts {
                 let is_done = !view.has_features || layout.has_features();
                 if is_done { Some(layout) } else { layout.with_features(bodies, &looks) }
             }
-            None => {
-                Layout::within(bodies, query.kind(), &looks).map(|layout| layout.without(scene.left_out()))
-            }
+            None => match Layout::within(bodies, query.kind(), &looks) {
+                Some(layout) => Some(layout.without(scene.left_out()).excluding(scene, &looks)?),
+                None => None,
+            },
         };
         let mut layout = made.ok_or(Error::Interrupted)?;
         layout.find_hubs(query.keeps_adjacent());

@@ -111,6 +111,7 @@ impl Detector {
     /// Combines a query with the tolerances of its pairs.
     fn question(&mut self, query: Query) -> Result<Question, Error> {
         query.check()?;
+        self.scene.may_exclude(query.kind())?;
         self.may_pair_bodies(&query)?;
         let tolerances = match query.certified().map(|certified| certified.tolerance) {
             Some(Some(tolerance)) => Some(Arc::new(Tolerances::named(tolerance))),

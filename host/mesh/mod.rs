@@ -25,6 +25,7 @@ pub use ply_problem::PlyProblem;
 pub use points::{Coordinate, Points};
 pub use positions::Positions;
 pub use problem::Problem;
+pub(crate) use topology::owners;
 pub use topology::{NO_EDGE, Topology};
 pub use topology_check::{Violation, check};
 pub use validate::{MAX_ABS_F32, MAX_ABS_F64, MAX_FACES, MAX_VERTICES};

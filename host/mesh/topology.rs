@@ -52,7 +52,7 @@ impl Topology {
         let mut topology = Topology {
             edges: Vec::with_capacity(corners.len() / 2 + 2),
             face_edges: vec![[NO_EDGE; 3]; faces.len()],
-            owners: vec![0; faces.len()],
+            owners: Vec::new(),
         };
         for (larger, ends) in starts.windows(2).enumerate() {
             if larger % PIECE == 0 && looks.ends() {
@@ -71,11 +71,24 @@ impl Topology {
                 topology.face_edges[face][k] = topology.edges.len() as u32 - 1;
             }
         }
-        let Topology { edges, face_edges, owners } = &mut topology;
-        own(owners, (face_edges, 3), edges.len(), &[|_| true], looks)?;
-        own(owners, (faces, 0), vertex_count, &[|owned| owned != 0, |_| true], looks)?;
+        let counts = [vertex_count as u32, topology.edges.len() as u32];
+        topology.owners = owners(faces, &topology.face_edges, counts, looks)?;
         Some(topology)
     }
+}
+
+/// The owner bits of each face, from its vertices and edges and how many of these there are. A face
+/// of three times [`NO_EDGE`] in both lists owns nothing. `None` if the work ended early.
+pub(crate) fn owners(
+    faces: &[[u32; 3]],
+    face_edges: &[[u32; 3]],
+    [vertices, edges]: [u32; 2],
+    looks: &Looks,
+) -> Option<Vec<u32>> {
+    let mut owners = vec![0; faces.len()];
+    own(&mut owners, (face_edges, 3), edges as usize, &[|_| true], looks)?;
+    own(&mut owners, (faces, 0), vertices as usize, &[|owned| owned != 0, |_| true], looks)?;
+    Some(owners)
 }
 
 /// Faces or vertices between two polls of an interrupt: less than a millisecond.

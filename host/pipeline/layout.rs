@@ -1,9 +1,11 @@
 //! The place of each body in the memory that all bodies share.
 
+use super::excluded::Excluded;
 use super::hubs;
-use crate::mesh::Topology;
+use crate::error::Error;
+use crate::mesh::{NO_EDGE, Topology, owners};
 use crate::query::QueryKind;
-use crate::scene::{Body, BodyId, BodyKind, CollisionFilter};
+use crate::scene::{Body, BodyId, BodyKind, CollisionFilter, Scene};
 use nearmiss_emulator::Looks;
 use nearmiss_kernels::abi::{BodyRecord, EVERY, NodeFilter};
 use nearmiss_kernels::bvh::filter::is_left_out;
@@ -41,6 +43,8 @@ pub struct Layout {
     /// The pairs of bodies that are left out, as kernels read them: see `FilterArgs::left_out`;
     /// empty without such.
     pub left_out: Arc<Vec<u32>>,
+    /// The pairs of features that are excluded, as kernels read them.
+    pub excluded: Arc<Excluded>,
     /// The bodies with triangles that may move, and those that are fixed.
     pub trees: [Vec<usize>; 2],
 }
@@ -114,6 +118,44 @@ impl Layout {
         Layout { left_out: Arc::new(list), ..self }
     }
 
+    /// Excludes the scene's pairs of features.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`], [`Error::Interrupted`].
+    pub fn excluding(mut self, scene: &Scene, looks: &Looks) -> Result<Layout, Error> {
+        self.excluded = Arc::new(Excluded::new(scene, &self.starts, looks)?);
+        self.disowned(looks).ok_or(Error::Interrupted)
+    }
+
+    /// Takes features from faces that take no part. Vertices and edges of no other face have no owner
+    /// then; no query tests them. `None` if the work was interrupted.
+    fn disowned(mut self, looks: &Looks) -> Option<Layout> {
+        if self.excluded.faces.is_empty() || !self.has_features() {
+            return Some(self);
+        }
+        let mut features = (*self.features).clone();
+        for (body, ends) in self.starts.windows(2).enumerate() {
+            let (first, count) = self.triangles(body);
+            let own = first as usize..(first + count) as usize;
+            if !own.clone().any(|face| self.excluded.has_face(face)) {
+                continue;
+            }
+            let rows = |all: &[[u32; 3]], start: u32| -> Vec<[u32; 3]> {
+                let row = |face: usize| match self.excluded.has_face(face) {
+                    true => [NO_EDGE; 3],
+                    false => all[face].map(|at| if at == NO_EDGE { at } else { at - start }),
+                };
+                own.clone().map(row).collect()
+            };
+            let faces = rows(&self.faces, ends[0].vertex);
+            let face_edges = rows(&features.face_edges, ends[0].edge);
+            let counts = [ends[1].vertex - ends[0].vertex, ends[1].edge - ends[0].edge];
+            features.owners[own.clone()].copy_from_slice(&owners(&faces, &face_edges, counts, looks)?);
+        }
+        self.features = Arc::new(features);
+        Some(self)
+    }
+
     /// Adds edges and owners of the same bodies; `None` if the work was interrupted. Cost: linear
     /// in triangles.
     pub fn with_features(mut self, bodies: &[Body], looks: &Looks) -> Option<Layout> {
@@ -129,7 +171,7 @@ impl Layout {
             self.starts[i + 1].edge = features.edges.len() as u32;
         }
         self.features = Arc::new(features);
-        Some(self)
+        self.disowned(looks)
     }
 
     /// Returns the layout of the same bodies for a query of another kind, without hubs.

@@ -6,6 +6,7 @@ pub(crate) mod collect;
 pub mod counts;
 mod demand;
 pub mod enclose;
+mod excluded;
 mod hubs;
 mod instances;
 mod launch;

@@ -3,7 +3,8 @@
 use crate::mesh::Positions;
 use nearmiss_kernels::abi::{
     BelowPrecisionArgs, CullArgs, CutArgs, DiscreteArgs, FeaturesArgs, LeastArgs, MeshVerticesArgs,
-    MortonArgs, NearArgs, PlaceArgs, Point, Positions as Frames, RungArgs, SolveArgs, Span, StartsArgs,
+    MortonArgs, NearArgs, NearExcludingArgs, PlaceArgs, Point, Positions as Frames, RungArgs, SolveArgs,
+    Span, StartsArgs,
 };
 use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::math::{Real, Vec3};
@@ -44,6 +45,8 @@ pub trait Precision: Real + Send {
     type FeaturesAtRest: Entry<Args = FeaturesArgs<Self>>;
     /// Finds pairs of features within a distance, at one time.
     type Near: Entry<Args = NearArgs<Self>>;
+    /// The same without pairs that the scene excludes.
+    type NearExcluding: Entry<Args = NearExcludingArgs<Self>>;
     /// Copies vertices to the meshes of deformable bodies.
     type MeshVertices: Entry<Args = MeshVerticesArgs<Self>>;
     /// Finds the least distance of triangles.
@@ -109,6 +112,7 @@ impl Precision for f32 {
     type FeaturesBefore = entry::narrow_features_before_f32;
     type FeaturesAtRest = entry::narrow_features_at_rest_f32;
     type Near = entry::narrow_near_f32;
+    type NearExcluding = entry::narrow_near_excluding_f32;
     type MeshVertices = entry::refit_meshes_vertices_f32;
     type Least = entry::narrow_least_f32;
     type Witness = entry::narrow_witness_f32;
@@ -165,6 +169,7 @@ impl Precision for f64 {
     type FeaturesBefore = entry::narrow_features_before_f64;
     type FeaturesAtRest = entry::narrow_features_at_rest_f64;
     type Near = entry::narrow_near_f64;
+    type NearExcluding = entry::narrow_near_excluding_f64;
     type MeshVertices = entry::refit_meshes_vertices_f64;
     type Least = entry::narrow_least_f64;
     type Witness = entry::narrow_witness_f64;

@@ -46,6 +46,12 @@ pub const SHARES: &str = "cost of each tile, to divide work among devices";
 pub const RECORDS: &str = "environment, groups and ranges of each body";
 /// Pairs of bodies that are left out.
 pub const LEFT_OUT: &str = "pairs of bodies that are left out";
+/// Pairs of vertices of which features are excluded.
+pub const EXCLUDED_VERTICES: &str = "vertices whose features are not tested together";
+/// Bodies at rest.
+pub const REST_SHAPES: &str = "vertices of rest shapes";
+/// Faces that take no part.
+pub const EXCLUDED_FACES: &str = "faces that take no part";
 /// Tolerances of bodies.
 pub const TOLERANCES: &str = "tolerance of each body";
 /// Counters of a frame.

@@ -5,6 +5,7 @@
 
 mod body;
 mod device_motion;
+mod exclusions;
 mod left_out;
 mod matrix;
 mod motion;
@@ -17,6 +18,8 @@ mod sides;
 
 pub use body::Body;
 pub use device_motion::{DeviceMotion, DevicePose, DeviceRows, Number};
+pub(crate) use exclusions::Excluded;
+pub use exclusions::{Exclusions, RestShape};
 pub use motion::Motion;
 pub(crate) use place::{Bounds, NOTHING, union};
 pub use pose::Pose;
@@ -149,6 +152,8 @@ pub struct Scene {
     free: Vec<u32>,
     /// Pairs of bodies that are left out: the smaller number first, ascending.
     pub(crate) left_out: Vec<[BodyId; 2]>,
+    /// Pairs of features that are left out.
+    pub(crate) excluded: Excluded,
 }
 
 impl Scene {
@@ -173,12 +178,13 @@ impl Scene {
         }
     }
 
-    /// Removes a body, and its pairs in the list of those that are left out. `None` if there is
+    /// Removes a body, its pairs in the list of those that are left out, and its exclusions. `None` if there is
     /// none of that number.
     pub fn remove(&mut self, id: BodyId) -> Option<Body> {
         self.get(id)?;
         self.free.push(id.0);
         self.forget_pairs(id);
+        self.excluded.forget(id);
         self.removed[id.index()] = true;
         Some(std::mem::replace(&mut self.bodies[id.index()], Body::none()))
     }

@@ -43,8 +43,8 @@ use crate::stage::fit::{
 use crate::stage::narrow::discrete::{Start, Still};
 use crate::stage::narrow::placed::Placed;
 use crate::stage::narrow::{
-    abreast, below_precision, bodies as narrow_bodies, certain, climb, cull, discrete, divide, features,
-    near, nearest, separate, slice, solve, turning,
+    abreast, below_precision, bodies as narrow_bodies, certain, climb, cull, discrete, divide, exclude,
+    features, near, nearest, separate, slice, solve, turning,
 };
 use crate::stage::refit::{levels, meshes as refit_of_meshes, tiles as refit_of_tiles, treelets};
 use crate::stage::traverse::instances::{
@@ -203,6 +203,10 @@ kernels! {
     narrow_turning: turning::solve, [TurningArgs], NARROW, 0;
     narrow_near_f32: near::near::<f32, B>, [NearArgs<f32>], RUNG, 0, registers = 64;
     narrow_near_f64: near::near::<f64, B>, [NearArgs<f64>], RUNG, 0;
+    narrow_near_excluding_f32: near::near_excluding::<f32, B>, [NearExcludingArgs<f32>], RUNG, 0;
+    narrow_near_excluding_f64: near::near_excluding::<f64, B>, [NearExcludingArgs<f64>], RUNG, 0;
+    narrow_exclude: exclude::exclude, [ExcludeArgs], RUNG, 0;
+    narrow_exclude_triangles: exclude::exclude_triangles, [ExcludeTrianglesArgs], NARROW, 0;
     narrow_least_f32: nearest::least::<f32, B>, [LeastArgs<f32>], RUNG, 0;
     narrow_least_f64: nearest::least::<f64, B>, [LeastArgs<f64>], RUNG, 0;
     narrow_witness_f32: nearest::witness::<f32, B>, [LeastArgs<f32>], RUNG, 0;

@@ -2,6 +2,7 @@
 
 mod bodies;
 mod crossing;
+mod exclusions;
 mod fans;
 mod geometry;
 mod instances;

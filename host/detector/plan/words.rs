@@ -17,7 +17,7 @@ pub const STAGES: [(&str, &str); 9] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 92] = [
+const KERNELS: [(&str, &str); 95] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
     ("place_turns", "rotation vectors and paths of bodies that turn"),
     ("place", "poses applied, uploads put in place, other bodies at rest"),
@@ -102,6 +102,9 @@ const KERNELS: [(&str, &str); 92] = [
     ("narrow_bodies_least", "the least distance of each pair of bodies"),
     ("narrow_bodies_first", "the first triangles at that distance"),
     ("narrow_bodies_nearest", "nearest points of these"),
+    ("narrow_near_excluding", "distances of feature pairs, without those excluded"),
+    ("narrow_exclude_triangles", "triangle pairs that are not excluded"),
+    ("narrow_exclude", "feature pairs that are not excluded"),
     ("narrow_near", "distances of feature pairs"),
     ("order_count", "contacts of each first feature"),
     ("order_sums", "contacts of each tile of bins"),

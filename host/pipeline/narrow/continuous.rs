@@ -1,6 +1,9 @@
 //! Moving features: their lists, and the launches from triangle pairs to contacts, or to the first
 //! of them.
 
+mod steps;
+
+use super::exclude::Kept;
 use super::features::Features;
 use super::rungs::Rungs;
 use super::start::StartCheck;
@@ -23,20 +26,7 @@ use nearmiss_kernels::abi::rows::code;
 use nearmiss_kernels::abi::{
     BodyTolerance, Counter, CullArgs, Hit, Pair, SolveArgs, Span, counter, earliest,
 };
-
-/// A step of the phase.
-#[derive(Clone, Copy)]
-enum Step {
-    /// Lists vertex/face and edge/edge candidates.
-    Features,
-    /// Lists those that may meet.
-    Cull,
-    /// Counts the triangle pairs that share a point at the start, at the same time as the next step.
-    /// That one mostly waits for few pairs.
-    Start,
-    /// Solves for contacts.
-    Solve,
-}
+use steps::Step;
 
 /// The lists of a continuous query, or of an earliest one.
 pub struct ContinuousNarrow {
@@ -45,6 +35,8 @@ pub struct ContinuousNarrow {
     start: Option<StartCheck>,
     /// Pairs that may meet; `None` with a separation, which has no cull.
     survivors: Option<[List<Pair>; 2]>,
+    /// Those that are not excluded, in a scene that excludes some.
+    kept: Option<Kept>,
     /// Vertex/face contacts.
     pub vf_hits: List<Hit>,
     /// Edge/edge contacts.
@@ -109,6 +101,7 @@ impl ContinuousNarrow {
             solver,
             start: None,
             survivors: (!is_apart).then(survivors).transpose()?,
+            kept: None,
             vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, capacities.hits[0])?,
             ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, capacities.hits[1])?,
             rungs: Rungs::new(device, solver.certified(), &capacities)?,
@@ -138,16 +131,6 @@ impl ContinuousNarrow {
         Ok(ContinuousNarrow { start: Some(StartCheck::new::<R>(device, few)?), ..self })
     }
 
-    /// Returns the steps, in order. With a separation there is no cull: signs could reject no pair.
-    fn all_steps(&self) -> &'static [Step] {
-        match (&self.survivors, &self.start) {
-            (Some(_), Some(_)) => &[Step::Features, Step::Cull, Step::Start, Step::Solve],
-            (Some(_), None) => &[Step::Features, Step::Cull, Step::Solve],
-            (None, Some(_)) => &[Step::Features, Step::Start, Step::Solve],
-            (None, None) => &[Step::Features, Step::Solve],
-        }
-    }
-
     /// Returns whether its contacts are proven.
     fn is_certified(&self) -> bool {
         self.solver.certified().is_some()
@@ -160,6 +143,11 @@ impl ContinuousNarrow {
 
     /// Returns the pairs that the solver tests.
     fn tested<'a>(&'a self, features: &'a Features) -> [&'a List<Pair>; 2] {
+        self.kept.as_ref().map_or_else(|| self.may_meet(features), Kept::lists)
+    }
+
+    /// Returns the pairs that may meet, with those that are excluded.
+    fn may_meet<'a>(&'a self, features: &'a Features) -> [&'a List<Pair>; 2] {
         self.survivors.as_ref().unwrap_or(&features.candidates).each_ref()
     }
 
@@ -253,17 +241,11 @@ impl ContinuousNarrow {
 
 impl<R: Precision> Narrow<R> for ContinuousNarrow {
     fn steps(&self) -> Vec<&'static str> {
-        let name = |step: &Step| match step {
-            Step::Start => "start",
-            Step::Features => "features",
-            Step::Cull => "cull",
-            Step::Solve => "solve",
-        };
-        self.all_steps().iter().map(name).collect()
+        self.all_steps().map(Step::name).collect()
     }
 
     fn run(&mut self, step: usize, given: &NarrowContext<R>) -> Result<(), Error> {
-        match self.all_steps()[step] {
+        match self.step_at(step)? {
             // A sample has only a part of the candidates, and none of it is counted.
             Step::Start => match self.start.as_ref().filter(|_| !given.is_sample) {
                 Some(start) => given.device.beside(|| start.run(given)),
@@ -281,6 +263,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
                 }
             }
             Step::Cull => self.cull(given),
+            Step::Exclude => self.keep(given),
             Step::Solve => self.solve(given),
         }
     }
@@ -310,10 +293,15 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
     }
 
     fn lists<'a>(&'a mut self, step: usize, features: &'a mut Features) -> Vec<&'a mut dyn GrowableOutput> {
-        match self.all_steps()[step] {
+        let Ok(step) = self.step_at(step) else { return Vec::new() };
+        match step {
             Step::Start => self.start.as_mut().map_or(Vec::new(), StartCheck::lists),
             Step::Features => growable(&mut features.candidates).chain(self.turning.lists()).collect(),
             Step::Cull => growable(self.survivors.iter_mut().flatten()).collect(),
+            Step::Exclude => {
+                let kept = self.kept.iter_mut().flat_map(Kept::growable);
+                kept.chain(self.turning.kept_lists()).collect()
+            }
             Step::Solve => growable([&mut self.vf_hits, &mut self.ee_hits])
                 .chain(growable(&mut self.counters))
                 .chain(self.rungs.lists())
@@ -332,6 +320,8 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
         if let Some([vf, ee]) = &self.survivors {
             lists.extend([named("narrow: vf that may meet", vf), named("narrow: ee that may meet", ee)]);
         }
+        let names = ["narrow: vf that are not excluded", "narrow: ee that are not excluded"];
+        lists.extend(self.kept.iter().flat_map(|kept| kept.between(names)));
         lists.extend(self.rungs.between());
         lists
     }

@@ -1,5 +1,6 @@
 //! Triangles at one time: their lists, and the launches from triangle pairs to those that meet.
 
+use super::exclude::exclude_triangles;
 use super::{AnswerLists, Features, Narrow, NarrowContext, growable};
 use crate::contacts::Entries;
 use crate::device::{Ahead, Device};
@@ -24,6 +25,8 @@ pub struct DiscreteNarrow {
     flags: DiscreteFlags,
     /// Pairs that meet.
     pub contacts: List<Pair>,
+    /// Those that meet with those that are excluded, in a scene that excludes some.
+    all: Option<List<Pair>>,
     /// Pairs that each filter left to the next, the last one to exact signs; only for the exact
     /// test.
     uncertain: Vec<List<Pair>>,
@@ -50,7 +53,7 @@ impl DiscreteNarrow {
         }
         let contacts = List::new(device, "contacts", counter::CONTACTS, few)?;
         let flags = DiscreteFlags::KEEP_ADJACENT.when(test.has_adjacent());
-        Ok(DiscreteNarrow { flags, contacts, uncertain, ordered: None })
+        Ok(DiscreteNarrow { flags, contacts, all: None, uncertain, ordered: None })
     }
 
     /// Returns the lists of a query that leaves out what touches without crossing, or not.
@@ -59,9 +62,24 @@ impl DiscreteNarrow {
         DiscreteNarrow { flags: self.flags | DiscreteFlags::ONLY_CROSSING.when(is_only), ..self }
     }
 
-    /// Returns the lists that the one step fills.
+    /// Drops pairs that are excluded, behind the test; with room for `few` contacts.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn exclude(&mut self, device: &Device, few: usize) -> Result<(), Error> {
+        self.all = Some(List::new(device, "contacts, with those excluded", counter::ALL_CONTACTS, few)?);
+        Ok(())
+    }
+
+    /// Returns the list of the pairs that the test finds.
+    fn found(&self) -> &List<Pair> {
+        self.all.as_ref().unwrap_or(&self.contacts)
+    }
+
+    /// Returns the lists that the test fills.
     pub fn all_lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
-        let contacts = std::iter::once(&mut self.contacts as &mut dyn GrowableOutput);
+        let found = self.all.as_mut().unwrap_or(&mut self.contacts);
+        let contacts = std::iter::once(found as &mut dyn GrowableOutput);
         contacts.chain(growable(&mut self.uncertain)).collect()
     }
 
@@ -87,7 +105,7 @@ impl DiscreteNarrow {
             frames: given.frames,
             faces: given.faces,
             pairs,
-            contacts: self.contacts.output(given.counters),
+            contacts: self.found().output(given.counters),
             uncertain: uncertain.map_or(Output::EMPTY, |list| list.output(given.counters)),
             flags: self.flags,
             pad: 0,
@@ -122,7 +140,7 @@ impl DiscreteNarrow {
                 frames: Positions { still: Span::EMPTY, moving: Span::EMPTY, turns: Span::EMPTY },
                 faces: Span::EMPTY,
                 pairs,
-                contacts: self.contacts.output(given.counters),
+                contacts: self.found().output(given.counters),
                 uncertain,
                 flags: DiscreteFlags::ONLY_CROSSING.when(self.flags.has(DiscreteFlags::ONLY_CROSSING)),
                 pad: 0,
@@ -148,19 +166,23 @@ pub fn lanes(uncertain: &List<Pair>) -> usize {
 
 impl<R: Precision> Narrow<R> for DiscreteNarrow {
     fn steps(&self) -> Vec<&'static str> {
-        vec!["decide"]
+        if self.all.is_some() { vec!["decide", "exclude"] } else { vec!["decide"] }
     }
 
-    fn run(&mut self, _step: usize, given: &NarrowContext<R>) -> Result<(), Error> {
-        self.decide(given)
+    fn run(&mut self, step: usize, given: &NarrowContext<R>) -> Result<(), Error> {
+        match &self.all {
+            Some(all) if step == 1 => exclude_triangles(given, all, self.contacts.output(given.counters)),
+            _ => self.decide(given),
+        }
     }
 
-    fn lists<'a>(&'a mut self, _step: usize, _: &'a mut Features) -> Vec<&'a mut dyn GrowableOutput> {
-        self.all_lists()
+    fn lists<'a>(&'a mut self, step: usize, _: &'a mut Features) -> Vec<&'a mut dyn GrowableOutput> {
+        if step == 1 { vec![&mut self.contacts] } else { self.all_lists() }
     }
 
     fn between<'a>(&'a self, _: &'a Features) -> Vec<Named<'a>> {
-        self.uncertain()
+        let all = self.all.iter().map(|all| named("narrow: contacts, with those excluded", all));
+        self.uncertain().into_iter().chain(all).collect()
     }
 
     fn ordering(&mut self) -> Option<&mut dyn Ordering> {

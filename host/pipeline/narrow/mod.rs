@@ -7,6 +7,7 @@ mod capacities;
 mod continuous;
 mod discrete;
 mod distance;
+mod exclude;
 mod features;
 mod near;
 mod rungs;
@@ -17,6 +18,7 @@ pub use answer::AnswerLists;
 pub use capacities::Capacities;
 pub use continuous::ContinuousNarrow;
 pub use discrete::DiscreteNarrow;
+pub use exclude::Exclusions;
 pub use features::Features;
 
 use super::broad::Placeable;
@@ -33,7 +35,9 @@ use crate::scene::Body;
 use bodies::BodiesNarrow;
 use distance::DistanceNarrow;
 use near::NearNarrow;
-use nearmiss_kernels::abi::{BodyRecord, BodyTolerance, Counters, Output, Pair, Point, Positions, Span};
+use nearmiss_kernels::abi::{
+    BodyRecord, BodyTolerance, Counters, ExclusionTables, Output, Pair, Point, Positions, Span,
+};
 
 /// Inputs of every step of the stage.
 pub struct NarrowContext<'a, R: Precision> {
@@ -53,6 +57,8 @@ pub struct NarrowContext<'a, R: Precision> {
     pub counters: Counters,
     /// Edges, owned features, and candidates; empty without a query of features.
     pub features: &'a Features,
+    /// Pairs of features that the scene excludes.
+    pub excluded: ExclusionTables,
     /// Meshes and bodies, if candidates are those of instances.
     pub placeable: Option<Placeable>,
     /// Whether memory may be taken; not while launches are listed.
@@ -155,25 +161,48 @@ pub fn narrow<R: Precision>(
     query: &Query,
     few: usize,
 ) -> Result<Box<dyn Narrow<R>>, Error> {
+    let excludes = !layout.excluded.is_empty();
     let mut narrow: Box<dyn Narrow<R>> = match query {
         Query::Discrete(query) => {
-            Box::new(DiscreteNarrow::new::<R>(device, query.test, few)?.only_crossing(query.only_crossing))
+            let mut narrow =
+                DiscreteNarrow::new::<R>(device, query.test, few)?.only_crossing(query.only_crossing);
+            if excludes {
+                narrow.exclude(device, few)?;
+            }
+            Box::new(narrow)
         }
-        Query::Continuous(query) => {
-            let narrow = ContinuousNarrow::all(device, query.solver, few)?;
-            Box::new(if query.assume_free { narrow } else { narrow.checking_start::<R>(device, few / 4)? })
+        Query::Continuous(continuous) => {
+            let narrow = ContinuousNarrow::all(device, continuous.solver, few)?;
+            Box::new(in_motion::<R>(narrow, device, (query.checks_start(), excludes), few)?)
         }
-        Query::Earliest(query) => {
-            let narrow = ContinuousNarrow::first(device, query.solver, few)?;
-            Box::new(if query.assume_free { narrow } else { narrow.checking_start::<R>(device, few / 4)? })
+        Query::Earliest(earliest) => {
+            let narrow = ContinuousNarrow::first(device, earliest.solver, few)?;
+            Box::new(in_motion::<R>(narrow, device, (query.checks_start(), excludes), few)?)
         }
-        Query::Near(query) => Box::new(NearNarrow::new(device, query.distance, few)?),
+        Query::Near(query) => Box::new(NearNarrow::new(device, (query.distance, excludes), few)?),
         Query::Distance(_) => Box::new(DistanceNarrow::new::<R>(device, few)?),
         Query::BodyPairs(query) => Box::new(BodiesNarrow::pairs(device, query.first, few)?),
         Query::BodyDistances(_) => Box::new(BodiesNarrow::distances(device, few)?),
     };
     if device.is_gpu() {
         narrow.order_on(device, layout, few / 4)?;
+    }
+    Ok(narrow)
+}
+
+/// Adds the parts that a query in motion needs: the check of its start, and lists of a scene that
+/// excludes pairs.
+fn in_motion<R: Precision>(
+    mut narrow: ContinuousNarrow,
+    device: &Device,
+    (checks_start, excludes): (bool, bool),
+    few: usize,
+) -> Result<ContinuousNarrow, Error> {
+    if checks_start {
+        narrow = narrow.checking_start::<R>(device, few / 4)?;
+    }
+    if excludes {
+        narrow.exclude(device, few)?;
     }
     Ok(narrow)
 }

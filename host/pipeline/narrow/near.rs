@@ -13,7 +13,7 @@ use crate::pipeline::order::{Order, Ordering, Unordered};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
 use crate::query::Query;
-use nearmiss_kernels::abi::{BodyTolerance, Counter, NearArgs, NearHit, Span, counter};
+use nearmiss_kernels::abi::{BodyTolerance, Counter, NearArgs, NearExcludingArgs, NearHit, Span, counter};
 
 /// A step of the phase.
 #[derive(Clone, Copy)]
@@ -32,6 +32,8 @@ impl Step {
 /// The lists of a near query.
 pub struct NearNarrow {
     distance: f64,
+    /// Whether the scene excludes pairs.
+    excludes: bool,
     /// Vertices and faces within the distance.
     vf_hits: List<NearHit>,
     /// Edges within the distance.
@@ -43,13 +45,14 @@ pub struct NearNarrow {
 }
 
 impl NearNarrow {
-    /// Allocates the lists, with room for `few` hits.
+    /// Allocates the lists, with room for `few` hits, of a scene that excludes pairs or not.
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(device: &Device, distance: f64, few: usize) -> Result<Self, Error> {
+    pub fn new(device: &Device, (distance, excludes): (f64, bool), few: usize) -> Result<Self, Error> {
         Ok(NearNarrow {
             distance,
+            excludes,
             vf_hits: List::new(device, "vertex/face pairs within the distance", counter::VF_HITS, few)?,
             ee_hits: List::new(device, "edge/edge pairs within the distance", counter::EE_HITS, 2 * few)?,
             undecided: counter::UNDECIDED,
@@ -70,7 +73,12 @@ impl NearNarrow {
             counters: given.counters,
             distance: self.distance,
         };
-        launch::striding::<R::Near>(given.device, vf.capacity() + ee.capacity(), &args)
+        let pairs = vf.capacity() + ee.capacity();
+        if self.excludes {
+            let args = NearExcludingArgs { near: args, tables: given.excluded };
+            return launch::striding::<R::NearExcluding>(given.device, pairs, &args);
+        }
+        launch::striding::<R::Near>(given.device, pairs, &args)
     }
 }
 

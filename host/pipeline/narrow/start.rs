@@ -2,6 +2,7 @@
 //! discrete query.
 
 use super::discrete::lanes;
+use super::exclude::exclude_triangles;
 use super::{NarrowContext, growable};
 use crate::device::Device;
 use crate::error::Error;
@@ -16,6 +17,8 @@ pub struct StartCheck {
     uncertain: Vec<List<Pair>>,
     /// Pairs that share a point. They are not listed.
     crossing: Counter,
+    /// The same with those that are excluded, in a scene that excludes some.
+    all: Option<List<Pair>>,
 }
 
 impl StartCheck {
@@ -30,13 +33,23 @@ impl StartCheck {
             let name = "pairs uncertain at the start in f64";
             uncertain.push(list(name, counter::UNCERTAIN_WIDE, few / 4)?);
         }
-        Ok(StartCheck { uncertain, crossing: counter::STARTS_CROSSING })
+        Ok(StartCheck { uncertain, crossing: counter::STARTS_CROSSING, all: None })
+    }
+
+    /// Does not count pairs that are excluded; with room for `few` pairs.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn exclude(&mut self, device: &Device, few: usize) -> Result<(), Error> {
+        let name = "crossing pairs, with those excluded";
+        self.all = Some(List::new(device, name, counter::ALL_CROSSING, few)?);
+        Ok(())
     }
 
     /// Returns the lists that the step fills.
     pub fn lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
         let crossing = std::iter::once(&mut self.crossing as &mut dyn GrowableOutput);
-        crossing.chain(growable(&mut self.uncertain)).collect()
+        crossing.chain(growable(&mut self.all)).chain(growable(&mut self.uncertain)).collect()
     }
 
     /// Returns the pairs that each filter left to the next, with names.
@@ -53,11 +66,13 @@ impl StartCheck {
     /// # Errors
     /// Device errors.
     pub fn run<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
+        let crossing = given.counters.output(Span::EMPTY, self.crossing);
+        let found = self.all.as_ref().map_or(crossing, |all| all.output(given.counters));
         let args = |pairs: Output<Pair>, uncertain: Option<&List<Pair>>| DiscreteArgs {
             frames: given.frames,
             faces: given.faces,
             pairs,
-            contacts: given.counters.output(Span::EMPTY, self.crossing),
+            contacts: found,
             uncertain: uncertain.map_or(Output::EMPTY, |list| list.output(given.counters)),
             flags: DiscreteFlags::NONE,
             pad: 0,
@@ -73,6 +88,7 @@ impl StartCheck {
             }?;
             (left, room) = (list.output(given.counters), lanes(list));
         }
-        launch::at_once::<R::StartExact>(device, room, &args(left, None))
+        launch::at_once::<R::StartExact>(device, room, &args(left, None))?;
+        self.all.as_ref().map_or(Ok(()), |all| exclude_triangles(given, all, crossing))
     }
 }

@@ -1,5 +1,6 @@
 //! Pairs of bodies that turn: their lists, and the launches around those of straight motion.
 
+use super::exclude::Kept;
 use super::{NarrowContext, growable};
 use crate::device::Device;
 use crate::error::Error;
@@ -24,6 +25,8 @@ pub struct Turning {
     turning: List<Pair>,
     /// Vertex/face and edge/edge pairs of those.
     candidates: [List<Pair>; 2],
+    /// Those of them that are not excluded, in a scene that excludes some.
+    kept: Option<Kept>,
 }
 
 impl Turning {
@@ -40,7 +43,41 @@ impl Turning {
                 list("vertex/face pairs that turn", counter::VF_TURNING)?,
                 list("edge/edge pairs that turn", counter::EE_TURNING)?,
             ],
+            kept: None,
         })
+    }
+
+    /// Drops pairs of features that are excluded.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn exclude(&mut self, device: &Device) -> Result<(), Error> {
+        let names = [
+            ("vertex/face pairs that turn, without those excluded", counter::VF_TURNING_KEPT),
+            ("edge/edge pairs that turn, without those excluded", counter::EE_TURNING_KEPT),
+        ];
+        self.kept = Some(Kept::new(device, names, [0, 0])?);
+        Ok(())
+    }
+
+    /// Launches the step that drops them, if it is to run.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn keep<R: Precision>(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
+        let Some(kept) = self.kept.as_mut().filter(|_| !given.frames.turns.is_empty() && !given.is_sample)
+        else {
+            return Ok(());
+        };
+        if given.may_grow {
+            kept.reserve(given.device, FEW)?;
+        }
+        kept.run(given, self.candidates.each_ref())
+    }
+
+    /// Returns the lists that [`Turning::keep`] fills.
+    pub fn kept_lists(&mut self) -> impl Iterator<Item = &mut dyn GrowableOutput> {
+        self.kept.iter_mut().flat_map(Kept::growable)
     }
 
     /// Makes room for all candidates: then a step in which other bodies turn has room too.
@@ -120,8 +157,9 @@ impl Turning {
         if given.frames.turns.is_empty() || given.is_sample {
             return Ok(());
         }
+        let tested = self.kept.as_ref().map_or(self.candidates.each_ref(), Kept::lists);
         let listed = |kind: usize| Listed {
-            pairs: self.candidates[kind].output(given.counters),
+            pairs: tested[kind].output(given.counters),
             begun: Output::EMPTY,
             hits: hits[kind].output(given.counters),
             left: Output::EMPTY,
@@ -142,7 +180,7 @@ impl Turning {
             flags: RungFlags::NONE,
             pad: 0,
         };
-        let pairs: usize = self.candidates.iter().map(List::capacity).sum();
+        let pairs: usize = tested.into_iter().map(List::capacity).sum();
         launch::striding::<narrow_turning>(given.device, pairs, &TurningArgs { rung, rest })
     }
 }

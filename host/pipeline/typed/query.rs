@@ -237,6 +237,7 @@ impl<R: Precision> QueryMemory<R> {
                         bodies: self.records.span(),
                         counters: self.counters.counters(),
                         features: &scene.features,
+                        excluded: scene.exclusions.tables(self.records.span()),
                         placeable: scene.broads[self.broad].phase.placeable(),
                         may_grow: !self.settled,
                         is_sample: matches!(step, Step::Narrow(_, true)),

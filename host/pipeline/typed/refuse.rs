@@ -50,6 +50,8 @@ impl<R: Precision> QueryMemory<R> {
     /// [`Error::AnswerTooLarge`]; device errors.
     pub(super) fn refuse(&self, scene: &SceneMemory<R>, step: Step, counters: &Counts) -> Result<(), Error> {
         match step {
+            // Rows of excluded pairs are not foreseen, but counted.
+            Step::Traverse if !self.layout.excluded.is_empty() => Ok(()),
             Step::Traverse => {
                 let positions = || {
                     let at = scene.all_positions(self, 0)?;

@@ -13,7 +13,7 @@ use crate::pipeline::broad::{
 use crate::pipeline::instances::Instances;
 use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List};
-use crate::pipeline::narrow::Features;
+use crate::pipeline::narrow::{Exclusions, Features};
 use crate::pipeline::placing::{Moved, Placing, Whereabouts};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::purpose;
@@ -71,6 +71,8 @@ pub struct SceneMemory<R: Precision> {
     has_vertices: bool,
     /// Pairs of bodies that are left out, as kernels read them; empty without such.
     left_out: Buffer<u32>,
+    /// Pairs of features that are excluded.
+    pub exclusions: Exclusions,
     /// Meshes and poses, from the first query of instances on.
     pub instances: Option<Instances>,
     /// Edges, owned features, and candidates of features; empty before the first query of them.
@@ -102,6 +104,7 @@ impl<R: Precision> SceneMemory<R> {
             vertices: Placing::new(&device.of(purpose::VERTICES), layout, bodies, parts.has_ends)?,
             has_vertices: parts.has_vertices,
             left_out: device.of(purpose::LEFT_OUT).upload(&parts.layout.left_out)?,
+            exclusions: Exclusions::new(&device, &parts.layout.excluded)?,
             instances: None,
             features: Features::none(&device)?,
             pairs: List::new(&device, "candidate triangle pairs", counter::PAIRS, 0)?,

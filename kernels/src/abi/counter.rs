@@ -156,6 +156,18 @@ counters! { 0;
     VF_TURNING,
     /// Edge/edge candidates of those.
     EE_TURNING,
+    /// Vertex/face pairs that are not excluded, in a scene that excludes some.
+    VF_KEPT,
+    /// Edge/edge pairs that are not excluded.
+    EE_KEPT,
+    /// Vertex/face pairs of bodies that turn that are not excluded.
+    VF_TURNING_KEPT,
+    /// Edge/edge pairs of bodies that turn that are not excluded.
+    EE_TURNING_KEPT,
+    /// Triangle pairs in contact, with those that are excluded.
+    ALL_CONTACTS,
+    /// Triangle pairs that share a point at t = 0, with those that are excluded.
+    ALL_CROSSING,
     /// Pairs of groups of bodies that overlap.
     GROUP_PAIRS,
     /// Pairs of bodies whose boxes overlap.

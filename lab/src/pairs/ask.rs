@@ -12,7 +12,7 @@ use nearmiss::research::pipeline::counts::{Counts, FrameCounters};
 use nearmiss::research::pipeline::narrow::{Capacities, ContinuousNarrow, Features, Narrow, NarrowContext};
 use nearmiss::research::pipeline::precision::Precision;
 use nearmiss::research::{Certified, ContinuousSolver, WithSolver};
-use nearmiss_kernels::abi::{Hit, Output, Positions, Span, counter};
+use nearmiss_kernels::abi::{ExclusionTables, Hit, Output, Positions, Span, counter};
 
 /// Tests whether the features of every case meet, and when first. It uses the query's solver,
 /// tolerance and iterations, with the kernels of a frame. The default tolerance is
@@ -129,6 +129,7 @@ impl<R: Precision> Run<'_, R> {
             bodies: Span::EMPTY,
             counters: self.counters.counters(),
             features: &self.features,
+            excluded: ExclusionTables::NONE,
             placeable: None,
             is_sample: false,
         };

@@ -12,7 +12,7 @@ use nearmiss::research::pipeline::list::List;
 use nearmiss::research::pipeline::narrow::{DiscreteNarrow, Features, NarrowContext};
 use nearmiss::research::pipeline::precision::Precision;
 use nearmiss::research::{TriangleTest, WithSolver};
-use nearmiss_kernels::abi::{self, Pair, Point, Span, counter};
+use nearmiss_kernels::abi::{self, ExclusionTables, Pair, Point, Span, counter};
 
 /// Answers to a number of triangle pairs.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -110,6 +110,7 @@ fn some<R: Precision>(
             bodies: Span::EMPTY,
             counters: counters.counters(),
             features: &features,
+            excluded: ExclusionTables::NONE,
             placeable: None,
             is_sample: false,
         };

@@ -18,6 +18,7 @@
 //! [`abreast`] and [`separate`]: they find contacts and bound their first times, with proof. The paper's solver is [`solve`], by the cubic.
 //! Pairs of bodies that turn take another way: [`divide`] takes them out of the candidates, and
 //! [`turning`] tests them on their paths.
+//! A scene that excludes pairs has [`mod@exclude`] behind the signs of triangles, and before a solver.
 //! [`below_precision`] counts contacts that are too large for the tolerance, if any can be.
 
 pub mod abreast;
@@ -28,6 +29,7 @@ pub mod climb;
 pub mod cull;
 pub mod discrete;
 pub mod divide;
+pub mod exclude;
 pub mod features;
 pub mod near;
 pub mod nearest;

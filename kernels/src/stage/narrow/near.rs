@@ -9,7 +9,8 @@
 //! Writes   pairs with squared distance and nearest points; the number of pairs that are not
 //!          certainly within the distance.
 //! Before   candidates are complete. Positions are finite. distance > 0.
-//! After    hits ⊇ {candidates within the distance}. None is farther by more than the rounding of
+//! After    hits ⊇ {candidates within the distance}, less those that the scene excludes
+//!          ([`super::exclude`]). None is farther by more than the rounding of
 //!          f64, see [`crate::prim::near`].
 //! Room     hits: counted past the end, grown, run again.
 //! Departs  pairs are measured in f64 for positions of either precision, so the bound is that of
@@ -19,14 +20,37 @@
 //!          About 220 operations of f32, and as many of f64 for a measured pair, five of them
 //!          divisions.
 
-use super::{Entries, edge_edge_at, stride, vertex_face_at};
-use crate::abi::{NearArgs, NearHit, Output, Pair, counter};
+use super::{Entries, edge_edge_at, exclude, stride, vertex_face_at};
+use crate::abi::{NearArgs, NearExcludingArgs, NearHit, Output, Pair, counter};
 use crate::exec::{Block, Lane, RowMap};
 use crate::math::{Real, Vec3};
 use crate::prim::near::{Filter, Near, edge_edge, vertex_face};
 
 /// Both kinds.
 pub fn near<R: Real, B: Block>(block: &mut B, args: &NearArgs<R>) {
+    both(block, args, |_, _| false, |_, _| false);
+}
+
+/// Both kinds, without pairs that the scene excludes. They are looked up once measured, when few are
+/// left.
+pub fn near_excluding<R: Real, B: Block>(block: &mut B, args: &NearExcludingArgs<R>) {
+    let NearExcludingArgs { near, tables } = args;
+    both(
+        block,
+        near,
+        |lane: &B::Lane, pair| exclude::vertex_face(lane, tables, near.faces, pair),
+        |lane: &B::Lane, pair| exclude::edge_edge(lane, tables, near.edges, pair),
+    );
+}
+
+/// Both kinds, without pairs that are excluded.
+#[inline(always)]
+fn both<R: Real, B: Block>(
+    block: &mut B,
+    args: &NearArgs<R>,
+    excludes_vf: impl Fn(&B::Lane, Pair) -> bool,
+    excludes_ee: impl Fn(&B::Lane, Pair) -> bool,
+) {
     each(
         block,
         args,
@@ -38,6 +62,7 @@ pub fn near<R: Real, B: Block>(block: &mut B, args: &NearArgs<R>) {
             [v, x, y, z]
         },
         |[v, x, y, z]| vertex_face(v, [x, y, z], args.distance),
+        excludes_vf,
     );
     each(
         block,
@@ -50,6 +75,7 @@ pub fn near<R: Real, B: Block>(block: &mut B, args: &NearArgs<R>) {
             [x, y, z, w]
         },
         |[x, y, z, w]| edge_edge([x, y], [z, w], args.distance),
+        excludes_ee,
     );
 }
 
@@ -63,6 +89,7 @@ fn each<R: Real, B: Block, M: RowMap<Row = [Vec3<R>; 4]>>(
     filter: &M,
     gather: impl Fn(&B::Lane, Pair) -> [Vec3<R>; 4],
     measure: impl Fn([Vec3<R>; 4]) -> Option<Near>,
+    excludes: impl Fn(&B::Lane, Pair) -> bool,
 ) {
     let count = pairs.listed(block);
     let mut entries = Entries::new(block);
@@ -78,6 +105,9 @@ fn each<R: Real, B: Block, M: RowMap<Row = [Vec3<R>; 4]>>(
                 let kept = result.filter(|(_, keep)| *keep != 0).map(|(pair, _)| pair);
                 let hit = kept.and_then(|pair| {
                     let near = measure(gather(lane, pair))?;
+                    if excludes(lane, pair) {
+                        return None;
+                    }
                     if !near.certain {
                         args.counters.add(lane, counter::UNDECIDED, 1);
                     }
