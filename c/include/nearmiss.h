@@ -51,7 +51,7 @@
 
 // The version of this header. It changes whenever a struct or a function changes. Compare it with
 // `nearmiss_abi()` before any other call: a library of another version has other structs.
-#define NEARMISS_ABI 7
+#define NEARMISS_ABI 8
 
 // Bytes of an error's text.
 #define NEARMISS_TEXT 1016
@@ -518,6 +518,28 @@ typedef struct {
     // The pose of a rigid body at the start.
     NearmissPose pose;
 } NearmissBody;
+
+// Pairs of features of a body that are not tested against each other, and faces that take no
+// part. A feature is a vertex, an edge or a face. Begin with `nearmiss_exclusions()`. Calls
+// copy everything that it points to.
+typedef struct {
+    // The rest shape, a point a vertex, in memory of the host. NULL data: the place of the
+    // body, at t = 0.
+    NearmissRows rest;
+    // Indices of faces that take no part, and with them vertices and edges of no other face.
+    const uint32_t *faces;
+    // Number of these.
+    size_t face_count;
+    // A length from 0. Pairs of features that are nearer than this in the rest shape are left
+    // out. 0 leaves out none.
+    double within;
+    // A pair of features is left out if a vertex of one and a vertex of the other have at most
+    // `ring - 1` edges between them. All queries leave out pairs of ring 1, except a discrete
+    // one that keeps adjacent triangles. 0 for no ring.
+    uint32_t ring;
+    // Zero.
+    uint32_t pad;
+} NearmissExclusions;
 
 // The motion of a body in a step, or its place at rest. Make it by `nearmiss_motion_positions`,
 // `_step`, `_pose`, `_pose_step` or `_turning`. Fields that `kind` does not read must be empty.
@@ -997,6 +1019,42 @@ NearmissCode nearmiss_detector_left_out(NearmissDetector *detector,
 // The exit status of the command line for a code: 0 success, 2 invalid argument, 3 invalid input,
 // 130 interrupted, 4 all others.
 uint32_t nearmiss_exit_code(uint32_t code);
+
+// No exclusions.
+NearmissExclusions nearmiss_exclusions(void);
+
+// Replaces the exclusions of a body, from the next query on, which rebuilds. Queries of
+// features and of triangles obey. Those of distances and of pairs of bodies fail if there are
+// exclusions. A body that is removed or replaced loses its exclusions: its vertices may have
+// other numbers. Other exclusions end the preparation of submissions.
+//
+// Fails with `NEARMISS_INVALID_ARGUMENT` for a body or a face that does not exist, a length
+// that is negative or not finite, and a rest shape of another number of vertices. Fails with
+// `NEARMISS_INPUT` for positions that are not finite. Then nothing has changed.
+//
+// # Safety
+// Memory that the exclusions point to is there.
+NearmissCode nearmiss_detector_exclude(NearmissDetector *detector,
+                                       uint32_t body,
+                                       const NearmissExclusions *exclusions,
+                                       NearmissError *error);
+
+// Replaces the list of pairs of vertices of two bodies, or of one with itself, of which
+// features are not tested against each other. `pairs` has `count` pairs: a vertex of body `a`,
+// and one of body `b`. Order and repeats do not matter; a count of 0 leaves out none. A body
+// that is removed or replaced takes its lists with it.
+//
+// Fails with `NEARMISS_INVALID_ARGUMENT` for a body or a vertex that does not exist, and for a
+// vertex with itself. Then the list is as before.
+//
+// # Safety
+// `pairs` points to that many pairs of numbers.
+NearmissCode nearmiss_detector_exclude_pairs(NearmissDetector *detector,
+                                             uint32_t a,
+                                             uint32_t b,
+                                             const uint32_t *pairs,
+                                             size_t count,
+                                             NearmissError *error);
 
 // Moves bodies for the next queries. Positions are uploaded once, for any number of queries. A
 // body that is not named rests where it was, or where its step ended.

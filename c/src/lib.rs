@@ -9,6 +9,7 @@ mod detector;
 mod device;
 mod edits;
 mod error;
+mod exclusions;
 mod frame;
 mod geometry;
 mod interrupt;
@@ -34,6 +35,7 @@ pub use detector::*;
 pub use device::*;
 pub use edits::*;
 pub use error::{NEARMISS_TEXT, NearmissCode, NearmissError, nearmiss_exit_code};
+pub use exclusions::*;
 pub use frame::*;
 pub use geometry::*;
 pub use interrupt::*;
@@ -57,7 +59,7 @@ use std::ffi::c_char;
 
 /// The version of this header. It changes whenever a struct or a function changes. Compare it with
 /// `nearmiss_abi()` before any other call: a library of another version has other structs.
-pub const NEARMISS_ABI: u32 = 7;
+pub const NEARMISS_ABI: u32 = 8;
 
 /// The version of the header that this library was built with. This function and
 /// `nearmiss_version()` are the same in all versions.

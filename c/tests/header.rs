@@ -170,6 +170,7 @@ fn the_compiler_lays_out_the_same() {
         NearmissDevicePair,
         NearmissEntries,
         NearmissError,
+        NearmissExclusions,
         NearmissFrameStatus,
         NearmissGeometry,
         NearmissKind,

@@ -4,6 +4,7 @@ use crate::answer::Answer;
 use crate::asked::{Asked, Does};
 use crate::device::Device;
 use crate::errors::raised;
+use crate::exclusions;
 use crate::geometry::Geometry;
 use crate::key::{self, Key, Pairs, body_of, numbers, pairs_of};
 use crate::on_device::DeviceAnswer;
@@ -260,6 +261,67 @@ impl Detector {
     #[getter]
     fn left_out(&self, py: Python<'_>) -> PyResult<Vec<(usize, usize)>> {
         self.look(py, |detector| numbers(detector.left_out()))
+    }
+
+    /// Replace the exclusions of a body: see Scene.exclude for the arguments.
+    ///
+    /// A body that is removed or replaced loses its exclusions: its vertices may have other numbers.
+    /// Other exclusions end the preparation of submissions, and the next query builds tiles or trees.
+    ///
+    /// Raises as Scene.exclude does. Then nothing has changed.
+    #[pyo3(signature = (body, *, ring = None, within = None, rest = None, faces = None))]
+    fn exclude(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = body_of)] body: Key,
+        ring: Option<&Bound<'_, PyAny>>,
+        within: Option<f64>,
+        rest: Option<&Bound<'_, PyAny>>,
+        faces: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let given = exclusions::Given::of(ring, within, rest, faces)?;
+        let id = self.body(py, body)?;
+        self.run(py, Does::Queries, |detector| {
+            if given.rests_now() {
+                detector.download_positions()?;
+            }
+            let own = given.of_body(detector.scene(), id);
+            detector.exclude(id, own)
+        })
+    }
+
+    /// Replace the list of pairs of vertices of two bodies: see Scene.exclude_pairs for the arguments.
+    ///
+    /// A body that is removed or replaced takes its lists with it. Another list ends the preparation of
+    /// submissions, and the next query builds tiles or trees.
+    ///
+    /// Raises as Scene.exclude_pairs does. Then the list is as before.
+    fn exclude_pairs(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = body_of)] a: Key,
+        #[pyo3(from_py_with = body_of)] b: Key,
+        pairs: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let (list, both) = (exclusions::pairs(pairs)?, [a, b]);
+        self.run(py, Does::Queries, |detector| {
+            let ids = key::each(detector.scene(), &both)?;
+            detector.exclude_pairs(ids, &list)
+        })
+    }
+
+    /// Pairs of vertices of two bodies that are left out, as an (n, 2) array, ascending.
+    fn excluded_pairs<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = body_of)] a: Key,
+        #[pyo3(from_py_with = body_of)] b: Key,
+    ) -> PyResult<Bound<'py, numpy::PyArray2<u32>>> {
+        let both = [a, b];
+        let list = self.look(py, |detector| {
+            key::each(detector.scene(), &both).map(|ids| detector.scene().excluded_pairs(ids))
+        })?;
+        Ok(crate::host::rows(py, &list.map_err(raised)?))
     }
 
     /// Return the place of a body at the start and the end of its step, copied to the host.

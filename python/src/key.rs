@@ -50,6 +50,15 @@ pub fn bodies(scene: &Scene, keys: &[Key]) -> Result<Vec<BodyId>, Error> {
     keys.iter().map(of).collect()
 }
 
+/// The bodies of `N` keys.
+///
+/// # Errors
+/// As of [`bodies`].
+pub fn each<const N: usize>(scene: &Scene, keys: &[Key; N]) -> Result<[BodyId; N], Error> {
+    let all = bodies(scene, keys)?;
+    Ok(std::array::from_fn(|at| all[at]))
+}
+
 /// Pairs of bodies, as Python names them.
 pub type Pairs = Vec<[Key; 2]>;
 

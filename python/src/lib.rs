@@ -13,6 +13,7 @@ mod detector;
 mod device;
 mod dlpack;
 mod errors;
+mod exclusions;
 mod frame;
 mod geometry;
 mod host;

@@ -1,6 +1,7 @@
 //! Bodies, and scenes of them.
 
 use crate::errors::{choice, integer, one_of, optional, raised};
+use crate::exclusions;
 use crate::host::{Most, faces, points, positions, rows};
 use crate::key::{self, Key, Pairs, bodies, body_of, numbers, pairs_of};
 use crate::matrix::pose_of;
@@ -236,6 +237,73 @@ impl Scene {
     #[getter]
     fn left_out(&self) -> Vec<(usize, usize)> {
         numbers(self.scene.left_out())
+    }
+
+    /// Replace the exclusions of a body: pairs of its features that are not tested against each other,
+    /// and faces that take no part. A feature is a vertex, an edge or a face.
+    ///
+    /// - `ring`: from 1. A pair of features is left out if a vertex of one and a vertex of the other have
+    ///   at most ring - 1 edges between them. Ring 1 has pairs with a common vertex. All queries leave
+    ///   these out, except Discrete(adjacent=True). Ring 2 also has pairs that an edge joins.
+    /// - `within`: a length. Pairs of features that are nearer than this in the rest shape are left out.
+    /// - `rest`: the rest shape, an (n, 3) array. Default: the place of the body, at t = 0.
+    /// - `faces`: indices of faces that take no part, and with them vertices and edges of no other face.
+    ///
+    /// exclude(body) alone excludes nothing. All queries obey, except
+    /// Distance, BodyPairs and BodyDistances: these raise InvalidArgumentError if there are exclusions.
+    /// A removed body loses its exclusions.
+    ///
+    /// Raises InvalidArgumentError for a body or a face that does not exist, a ring of 0, a length that
+    /// is negative or not finite, and a rest shape of another number of vertices. InputError for
+    /// vertices that are not finite. Then nothing has changed.
+    #[pyo3(signature = (body, *, ring = None, within = None, rest = None, faces = None))]
+    fn exclude(
+        &mut self,
+        #[pyo3(from_py_with = body_of)] body: Key,
+        ring: Option<&Bound<'_, PyAny>>,
+        within: Option<f64>,
+        rest: Option<&Bound<'_, PyAny>>,
+        faces: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        self.is_free("exclude features of")?;
+        let given = exclusions::Given::of(ring, within, rest, faces)?;
+        let [id] = key::each(&self.scene, &[body]).map_err(raised)?;
+        let own = given.of_body(&self.scene, id);
+        self.scene.exclude(id, own).map_err(raised)
+    }
+
+    /// Replace the list of pairs of vertices of two bodies, or of one with itself, of which features are
+    /// not tested against each other.
+    ///
+    /// - `a`, `b`: numbers or names of bodies.
+    /// - `pairs`: (n, 2) integers: a vertex of a, and one of b. Order and repeats do not matter; [] leaves
+    ///   out none. A pair of features is left out if a vertex of one and a vertex of the other are a pair.
+    ///
+    /// A body that is removed takes its lists with it.
+    ///
+    /// Raises InvalidArgumentError for a body or a vertex that does not exist, and for a vertex with
+    /// itself. Then the list is as before.
+    fn exclude_pairs(
+        &mut self,
+        #[pyo3(from_py_with = body_of)] a: Key,
+        #[pyo3(from_py_with = body_of)] b: Key,
+        pairs: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        self.is_free("exclude features of")?;
+        let list = exclusions::pairs(pairs)?;
+        let ids = key::each(&self.scene, &[a, b]).map_err(raised)?;
+        self.scene.exclude_pairs(ids, &list).map_err(raised)
+    }
+
+    /// Pairs of vertices of two bodies that are left out, as an (n, 2) array, ascending.
+    fn excluded_pairs<'py>(
+        &self,
+        py: Python<'py>,
+        #[pyo3(from_py_with = body_of)] a: Key,
+        #[pyo3(from_py_with = body_of)] b: Key,
+    ) -> PyResult<Bound<'py, numpy::PyArray2<u32>>> {
+        let ids = key::each(&self.scene, &[a, b]).map_err(raised)?;
+        Ok(rows(py, &self.scene.excluded_pairs(ids)))
     }
 
     /// Return the number of the one body with that name: scene[name] is the same.

@@ -2,6 +2,7 @@
 
 mod answers;
 mod bodies;
+mod exclusions;
 mod interrupted;
 mod left_out;
 mod one_detector;

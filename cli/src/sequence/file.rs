@@ -1,5 +1,6 @@
-//! Files of scenes: TOML, a table a body, and pairs of bodies that are left out.
+//! Files of scenes: TOML, a table a body, pairs of bodies that are left out, and pairs of vertices.
 
+use super::exclusions::{ExcludeTable, ExcludedPairs, PairsTable, pairs};
 use super::poses::{PathName, PoseTable, Poses};
 use nearmiss::error::Error;
 use nearmiss::mesh::Problem;
@@ -21,8 +22,18 @@ pub struct Described {
     pub poses: Poses,
     /// Its filter.
     pub filter: CollisionFilter,
+    /// Features that it excludes.
+    pub exclude: Option<ExcludeTable>,
     /// How messages call it: its name, and the line at which it begins.
     pub called: String,
+}
+
+impl Described {
+    /// All files that it names.
+    pub fn files(self) -> Vec<PathBuf> {
+        let rest = self.exclude.as_ref().and_then(ExcludeTable::rest).map(Path::to_path_buf);
+        self.meshes.into_iter().chain(rest).collect()
+    }
 }
 
 /// A scene as a file describes it.
@@ -32,6 +43,8 @@ pub struct SceneFile {
     pub bodies: Vec<Described>,
     /// Pairs of them that are left out, by their places.
     pub left_out: Vec<[usize; 2]>,
+    /// Pairs of vertices that are excluded.
+    pub pairs: Vec<ExcludedPairs>,
 }
 
 #[derive(Deserialize)]
@@ -41,6 +54,8 @@ struct Whole {
     body: Vec<Spanned<Table>>,
     #[serde(default)]
     leave_out: Vec<Spanned<[String; 2]>>,
+    #[serde(default)]
+    exclude_pairs: Vec<Spanned<PairsTable>>,
 }
 
 #[derive(Deserialize)]
@@ -58,6 +73,7 @@ struct BodyTable {
     group: Option<u32>,
     mask: Option<u32>,
     self_collision: Option<bool>,
+    exclude: Option<ExcludeTable>,
 }
 
 #[derive(Clone, Copy, Default, Deserialize)]
@@ -104,9 +120,10 @@ pub fn read(path: &Path) -> Result<SceneFile, Error> {
         }
         all.push(body);
     }
-    let pairs = whole.leave_out.into_iter();
-    let left_out = pairs.map(|pair| pair_of(path, line(pair.span().start), pair.get_ref(), &names));
-    Ok(SceneFile { left_out: left_out.collect::<Result<_, _>>()?, bodies: all })
+    let left_out = whole.leave_out.into_iter();
+    let left_out = left_out.map(|pair| pair_of(path, line(pair.span().start), pair.get_ref(), &names));
+    let left_out = left_out.collect::<Result<_, _>>()?;
+    Ok(SceneFile { left_out, pairs: pairs(path, whole.exclude_pairs, line, &names)?, bodies: all })
 }
 
 /// A pair of `leave_out`, by places.
@@ -205,12 +222,15 @@ fn described(path: &Path, line: usize, table: Table) -> Result<Described, Error>
         let what = "`self_collision` is true, and a fixed body never collides with itself";
         return Err(bad(what, "remove it, or make the body rigid or deformable"));
     }
-    let self_collision = table.self_collision;
+    if let Some([what, advice]) = table.exclude.as_ref().and_then(ExcludeTable::fault) {
+        return Err(bad(what, advice));
+    }
+    let (self_collision, exclude) = (table.self_collision, table.exclude);
     let stem = || crate::stem(&meshes[0]);
     let name = table.name.unwrap_or_else(stem);
     let called = format!("body {name:?} (line {line})");
     let filter = CollisionFilter { environment, group, mask, self_collision };
-    Ok(Described { name, meshes, kind, poses, filter, called })
+    Ok(Described { name, meshes, kind, poses, filter, exclude, called })
 }
 
 /// As a file names it.

@@ -1,5 +1,6 @@
 //! Several frames of several bodies: from a file of a scene, or from the frames of a mesh.
 
+mod exclusions;
 mod file;
 mod poses;
 pub mod steps;
@@ -10,11 +11,12 @@ use crate::args::DetectArgs;
 use crate::meshes::Reader;
 use crate::output::say;
 use crate::rows::numbered;
+use exclusions::{ExcludedPairs, exclude};
 use file::{Described, SceneFile, wrong};
 use nearmiss::error::Error;
 use nearmiss::memory;
 use nearmiss::mesh::{Body, Positions};
-use nearmiss::scene::{BodyId, BodyKind, Motion, Scene};
+use nearmiss::scene::{BodyId, BodyKind, Exclusions, Motion, Scene};
 use nearmiss::words::counted;
 use nearmiss_io::{MeshFile, Polygons};
 use poses::Poses;
@@ -65,10 +67,22 @@ pub struct Sequence {
     pub polygons: Vec<Polygons>,
     /// Pairs of bodies that are left out, by their places.
     left_out: Vec<[usize; 2]>,
+    excluded: Excluded,
     /// How many frames there are: at least one.
     pub frames: usize,
     /// The names of the bodies in rows: those of a scene file, or numbers of several.
     pub names: Option<Vec<String>>,
+}
+
+/// Features that a scene file excludes.
+#[derive(Default)]
+struct Excluded {
+    /// Exclusions of bodies, by their places.
+    own: Vec<(usize, Exclusions)>,
+    pairs: Vec<ExcludedPairs>,
+    /// The file, and how messages call its bodies.
+    path: PathBuf,
+    called: Vec<String>,
 }
 
 /// Whether a file is one of a scene.
@@ -83,7 +97,7 @@ pub fn files(args: &DetectArgs) -> HashSet<PathBuf> {
     let scenes = named.iter().filter(|path| is_scene(path));
     let meshes = scenes.flat_map(|path| {
         let scene = file::read(path).unwrap_or_default();
-        scene.bodies.into_iter().flat_map(|body| body.meshes).map(|mesh| folder_of(path).join(mesh))
+        scene.bodies.into_iter().flat_map(Described::files).map(|mesh| folder_of(path).join(mesh))
     });
     meshes.chain(named.iter().map(|path| path.to_path_buf())).collect()
 }
@@ -130,8 +144,8 @@ impl Sequence {
 
     fn new(told: Vec<Told>, names: Option<Vec<String>>) -> Sequence {
         let frames = told.iter().map(|one| one.track.frames()).max().unwrap_or(1);
-        let (bodies, tracks, polygons, left_out) = Default::default();
-        let all = Sequence { bodies, tracks, polygons, left_out, frames, names };
+        let (bodies, tracks, polygons, left_out, excluded) = Default::default();
+        let all = Sequence { bodies, tracks, polygons, left_out, excluded, frames, names };
         told.into_iter().fold(all, |mut all, Told { body, track, polygons }| {
             all.bodies.push(body);
             all.tracks.push(track);
@@ -142,7 +156,7 @@ impl Sequence {
 
     /// Reads a scene and all of its meshes.
     fn read(path: &Path, reader: &mut Reader) -> Result<Sequence, Error> {
-        let SceneFile { bodies: described, left_out } = file::read(path)?;
+        let SceneFile { bodies: described, left_out, pairs } = file::read(path)?;
         let counts = |body: &Described| body.meshes.len().max(body.poses.frames.len());
         let longest =
             described.iter().max_by_key(|body| counts(body)).map(|body| (counts(body), &body.called));
@@ -158,8 +172,19 @@ impl Sequence {
         for body in &described {
             told.push(of_table((path, folder), body, &mut read, reader)?);
         }
+        let mut excluded = Excluded { pairs, path: path.into(), ..Excluded::default() };
+        for (at, (table, told)) in described.iter().zip(&told).enumerate() {
+            excluded.called.push(table.called.clone());
+            if let Some(table) = &table.exclude {
+                excluded.own.push((at, table.read(folder, &told.body, reader)?));
+            }
+        }
         let names = described.into_iter().map(|body| body.name).collect();
-        Ok(Sequence { left_out, ..Sequence::new(told, Some(names)) })
+        let all = Sequence { left_out, excluded, ..Sequence::new(told, Some(names)) };
+        if !(all.excluded.own.is_empty() && all.excluded.pairs.is_empty()) {
+            all.scene(true)?;
+        }
+        Ok(all)
     }
 
     /// How many questions there are: of what stands still one a frame, else one a step.
@@ -189,6 +214,8 @@ impl Sequence {
         let ids: Vec<BodyId> = scene.ids().collect();
         let pairs: Vec<_> = self.left_out.iter().map(|pair| pair.map(|body| ids[body])).collect();
         scene.leave_out(&pairs)?;
+        let Excluded { own, pairs, path, called } = &self.excluded;
+        exclude(&mut scene, own, pairs, (path, called))?;
         Ok(scene)
     }
 

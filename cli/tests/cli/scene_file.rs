@@ -1,5 +1,7 @@
 //! `detect scene.toml`: bodies of every kind, what a file may say, and what is wrong with it.
 
+mod exclusions;
+
 use super::{Folder, ok, refused, summary};
 use serde_json::Value;
 
@@ -269,7 +271,7 @@ fn what_is_wrong_with_a_file_is_named() {
     }
     for (text, said) in [
         ("", "has no bodies; add a table"),
-        ("[[bodies]]\n", "line 1: unknown field `bodies`, expected `body`"),
+        ("[[bodies]]\n", "line 1: unknown field `bodies`, expected one of `body`"),
         ("body = 3\n", "line 1: invalid type: integer `3`"),
         ("[[body]\n", "line 1"),
         ("[[body]]\nkind = \"fixed\"\n", "the body of line 1: `mesh` is missing"),

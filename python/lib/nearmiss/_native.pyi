@@ -297,6 +297,23 @@ class Scene:
     def left_out(self) -> list[tuple[int, int]]:
         """Pairs of bodies that are left out: the smaller number first, ascending."""
 
+    def exclude(
+        self,
+        body: Key,
+        *,
+        ring: int | None = None,
+        within: float | None = None,
+        rest: Array | None = None,
+        faces: Array | None = None,
+    ) -> None:
+        """x"""
+
+    def exclude_pairs(self, a: Key, b: Key, pairs: Array) -> None:
+        """x"""
+
+    def excluded_pairs(self, a: Key, b: Key) -> NDArray[np.uint32]:
+        """x"""
+
     def id(self, name: str) -> int:
         """Return the number of the one body with that name: scene[name] is the same.
 
@@ -1139,6 +1156,23 @@ class Detector:
     @property
     def left_out(self) -> list[tuple[int, int]]:
         """Pairs of bodies that are left out: the smaller number first, ascending."""
+
+    def exclude(
+        self,
+        body: Key,
+        *,
+        ring: int | None = None,
+        within: float | None = None,
+        rest: Array | None = None,
+        faces: Array | None = None,
+    ) -> None:
+        """x"""
+
+    def exclude_pairs(self, a: Key, b: Key, pairs: Array) -> None:
+        """x"""
+
+    def excluded_pairs(self, a: Key, b: Key) -> NDArray[np.uint32]:
+        """x"""
 
     def download_positions(self, body: Key) -> tuple[NDArray[Any], NDArray[Any]] | tuple[Pose, Pose]:
         """Return the place of a body at the start and the end of its step, copied to the host.

@@ -1,5 +1,4 @@
-//! What exclusions cost: launches and bytes of scenes that have them. Those that have none have
-//! neither.
+//! The cost of exclusions: launches and bytes. Scenes without them have neither.
 
 use super::*;
 
