@@ -299,11 +299,11 @@ impl Detector {
     fn exclude_pairs(
         &self,
         py: Python<'_>,
-        #[pyo3(from_py_with = body_of)] a: Key,
-        #[pyo3(from_py_with = body_of)] b: Key,
+        #[pyo3(from_py_with = body_of)] body: Key,
+        #[pyo3(from_py_with = body_of)] other: Key,
         pairs: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
-        let (list, both) = (exclusions::pairs(pairs)?, [a, b]);
+        let (list, both) = (exclusions::pairs(pairs)?, [body, other]);
         self.run(py, Does::Queries, |detector| {
             let ids = key::each(detector.scene(), &both)?;
             detector.exclude_pairs(ids, &list)
@@ -314,10 +314,10 @@ impl Detector {
     fn excluded_pairs<'py>(
         &self,
         py: Python<'py>,
-        #[pyo3(from_py_with = body_of)] a: Key,
-        #[pyo3(from_py_with = body_of)] b: Key,
+        #[pyo3(from_py_with = body_of)] body: Key,
+        #[pyo3(from_py_with = body_of)] other: Key,
     ) -> PyResult<Bound<'py, numpy::PyArray2<u32>>> {
-        let both = [a, b];
+        let both = [body, other];
         let list = self.look(py, |detector| {
             key::each(detector.scene(), &both).map(|ids| detector.scene().excluded_pairs(ids))
         })?;

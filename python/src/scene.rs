@@ -239,8 +239,9 @@ impl Scene {
         numbers(self.scene.left_out())
     }
 
-    /// Replace the exclusions of a body: pairs of its features that are not tested against each other,
-    /// and faces that take no part. A feature is a vertex, an edge or a face.
+    /// Replace the exclusions of a body: pairs of its features, and faces that take no part.
+    ///
+    /// A feature is a vertex, an edge or a face.
     ///
     /// - `ring`: from 1. A pair of features is left out if a vertex of one and a vertex of the other have
     ///   at most ring - 1 edges between them. Ring 1 has pairs with a common vertex. All queries leave
@@ -249,9 +250,9 @@ impl Scene {
     /// - `rest`: the rest shape, an (n, 3) array. Default: the place of the body, at t = 0.
     /// - `faces`: indices of faces that take no part, and with them vertices and edges of no other face.
     ///
-    /// exclude(body) alone excludes nothing. All queries obey, except
-    /// Distance, BodyPairs and BodyDistances: these raise InvalidArgumentError if there are exclusions.
-    /// A removed body loses its exclusions.
+    /// exclude(body) alone excludes nothing. All queries obey, except Distance, BodyPairs and
+    /// BodyDistances: these raise InvalidArgumentError if there are exclusions. A removed body loses its
+    /// exclusions.
     ///
     /// Raises InvalidArgumentError for a body or a face that does not exist, a ring of 0, a length that
     /// is negative or not finite, and a rest shape of another number of vertices. InputError for
@@ -272,12 +273,11 @@ impl Scene {
         self.scene.exclude(id, own).map_err(raised)
     }
 
-    /// Replace the list of pairs of vertices of two bodies, or of one with itself, of which features are
-    /// not tested against each other.
+    /// Replace the list of pairs of vertices of two bodies whose features are not tested together.
     ///
-    /// - `a`, `b`: numbers or names of bodies.
-    /// - `pairs`: (n, 2) integers: a vertex of a, and one of b. Order and repeats do not matter; [] leaves
-    ///   out none. A pair of features is left out if a vertex of one and a vertex of the other are a pair.
+    /// - `body`, `other`: numbers or names of bodies; they may be the same.
+    /// - `pairs`: (n, 2) integers: a vertex of body, and one of other. Order and repeats do not matter; []
+    ///   leaves out none. A pair of features is left out if the list has a vertex of each as a pair.
     ///
     /// A body that is removed takes its lists with it.
     ///
@@ -285,13 +285,13 @@ impl Scene {
     /// itself. Then the list is as before.
     fn exclude_pairs(
         &mut self,
-        #[pyo3(from_py_with = body_of)] a: Key,
-        #[pyo3(from_py_with = body_of)] b: Key,
+        #[pyo3(from_py_with = body_of)] body: Key,
+        #[pyo3(from_py_with = body_of)] other: Key,
         pairs: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
         self.is_free("exclude features of")?;
         let list = exclusions::pairs(pairs)?;
-        let ids = key::each(&self.scene, &[a, b]).map_err(raised)?;
+        let ids = key::each(&self.scene, &[body, other]).map_err(raised)?;
         self.scene.exclude_pairs(ids, &list).map_err(raised)
     }
 
@@ -299,10 +299,10 @@ impl Scene {
     fn excluded_pairs<'py>(
         &self,
         py: Python<'py>,
-        #[pyo3(from_py_with = body_of)] a: Key,
-        #[pyo3(from_py_with = body_of)] b: Key,
+        #[pyo3(from_py_with = body_of)] body: Key,
+        #[pyo3(from_py_with = body_of)] other: Key,
     ) -> PyResult<Bound<'py, numpy::PyArray2<u32>>> {
-        let ids = key::each(&self.scene, &[a, b]).map_err(raised)?;
+        let ids = key::each(&self.scene, &[body, other]).map_err(raised)?;
         Ok(rows(py, &self.scene.excluded_pairs(ids)))
     }
 

@@ -34,7 +34,7 @@ def features(answer):
     edges = sorted({tuple(sorted(pair, reverse=True)) for x, y, z in FACES.tolist() for pair in [(x, y), (y, z), (z, x)]})
     for body, kind, a, b in zip(answer.bodies.tolist(), answer.kind.tolist(), answer.feature_a.tolist(), answer.feature_b.tolist()):
         row = (*body, kind, a, b)
-        if kind == nm.Kind.VF:
+        if kind == nm.Kind.VERTEX_FACE:
             yield row, body, ([a], None), (FACES[b].tolist(), b)
         else:
             yield row, body, (list(edges[a]), None), (list(edges[b]), None)

@@ -57,6 +57,8 @@ pub fn of(plan: &Plan, layout: &Layout, query: &Query, is_gpu: bool) -> Vec<Left
     put(groups, "groups in the walk", "every body is in all groups, and meets all groups");
     let listed = layout.has_several() && layout.left_out.is_empty();
     put(listed, "list of pairs in the walk", "no pair of bodies is left out");
+    let obeys = query.kind().is_within_bodies() && !query.kind().is_of_bodies();
+    put(obeys && layout.excluded.is_empty(), "exclusions", "no pair of features is excluded");
     put(query.kind().is_at_rest(), "positions at the end of the step", "only t = 0 is tested");
     put(buffer(purpose::EDGES), "edges", "triangles are tested as a whole");
     let between = !query.kind().is_within_bodies();

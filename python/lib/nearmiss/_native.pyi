@@ -306,13 +306,41 @@ class Scene:
         rest: Array | None = None,
         faces: Array | None = None,
     ) -> None:
-        """x"""
+        """Replace the exclusions of a body: pairs of its features that are not tested against each other,
+        and faces that take no part. A feature is a vertex, an edge or a face.
 
-    def exclude_pairs(self, a: Key, b: Key, pairs: Array) -> None:
-        """x"""
+        - `ring`: from 1. A pair of features is left out if a vertex of one and a vertex of the other have
+          at most ring - 1 edges between them. Ring 1 has pairs with a common vertex. All queries leave
+          these out, except Discrete(adjacent=True). Ring 2 also has pairs that an edge joins.
+        - `within`: a length. Pairs of features that are nearer than this in the rest shape are left out.
+        - `rest`: the rest shape, an (n, 3) array. Default: the place of the body, at t = 0.
+        - `faces`: indices of faces that take no part, and with them vertices and edges of no other face.
 
-    def excluded_pairs(self, a: Key, b: Key) -> NDArray[np.uint32]:
-        """x"""
+        exclude(body) alone excludes nothing. All queries obey, except
+        Distance, BodyPairs and BodyDistances: these raise InvalidArgumentError if there are exclusions.
+        A removed body loses its exclusions.
+
+        Raises InvalidArgumentError for a body or a face that does not exist, a ring of 0, a length that
+        is negative or not finite, and a rest shape of another number of vertices. InputError for
+        vertices that are not finite. Then nothing has changed.
+        """
+
+    def exclude_pairs(self, body: Key, other: Key, pairs: Array) -> None:
+        """Replace the list of pairs of vertices of two bodies, or of one with itself, of which features are
+        not tested against each other.
+
+        - `a`, `b`: numbers or names of bodies.
+        - `pairs`: (n, 2) integers: a vertex of a, and one of b. Order and repeats do not matter; [] leaves
+          out none. A pair of features is left out if a vertex of one and a vertex of the other are a pair.
+
+        A body that is removed takes its lists with it.
+
+        Raises InvalidArgumentError for a body or a vertex that does not exist, and for a vertex with
+        itself. Then the list is as before.
+        """
+
+    def excluded_pairs(self, body: Key, other: Key) -> NDArray[np.uint32]:
+        """Pairs of vertices of two bodies that are left out, as an (n, 2) array, ascending."""
 
     def id(self, name: str) -> int:
         """Return the number of the one body with that name: scene[name] is the same.
@@ -1166,13 +1194,25 @@ class Detector:
         rest: Array | None = None,
         faces: Array | None = None,
     ) -> None:
-        """x"""
+        """Replace the exclusions of a body: see Scene.exclude for the arguments.
 
-    def exclude_pairs(self, a: Key, b: Key, pairs: Array) -> None:
-        """x"""
+        A body that is removed or replaced loses its exclusions: its vertices may have other numbers.
+        Other exclusions end the preparation of submissions, and the next query builds tiles or trees.
 
-    def excluded_pairs(self, a: Key, b: Key) -> NDArray[np.uint32]:
-        """x"""
+        Raises as Scene.exclude does. Then nothing has changed.
+        """
+
+    def exclude_pairs(self, body: Key, other: Key, pairs: Array) -> None:
+        """Replace the list of pairs of vertices of two bodies: see Scene.exclude_pairs for the arguments.
+
+        A body that is removed or replaced takes its lists with it. Another list ends the preparation of
+        submissions, and the next query builds tiles or trees.
+
+        Raises as Scene.exclude_pairs does. Then the list is as before.
+        """
+
+    def excluded_pairs(self, body: Key, other: Key) -> NDArray[np.uint32]:
+        """Pairs of vertices of two bodies that are left out, as an (n, 2) array, ascending."""
 
     def download_positions(self, body: Key) -> tuple[NDArray[Any], NDArray[Any]] | tuple[Pose, Pose]:
         """Return the place of a body at the start and the end of its step, copied to the host.
