@@ -84,7 +84,7 @@ pub use device::{Device, Interrupt};
 pub use error::Error;
 pub use mesh::Mesh;
 pub use query::{BodyDistances, BodyPairs, Continuous, Discrete, Distance, Earliest, Near, Query};
-pub use scene::{Body, Scene};
+pub use scene::{Body, Scene, Thickness};
 pub use several::{DeviceShare, MultiDetector};
 pub use stages::{Stage, Stages};
 

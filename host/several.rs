@@ -1,6 +1,7 @@
 //! One scene on several devices: each has all positions, and finds its share of the tiles.
 
 mod cuts;
+mod edits;
 mod interrupted;
 mod left_out;
 mod tiles;
@@ -12,7 +13,7 @@ use crate::error::Error;
 use crate::pipeline::Share;
 use crate::pipeline::wear::Wear;
 use crate::query::{BroadPhase, Query, Rebuild, TypedQuery};
-use crate::scene::{Body, BodyId, Motion, Scene};
+use crate::scene::{BodyId, Motion, Scene};
 use cuts::cuts;
 use std::time::Instant;
 
@@ -190,37 +191,6 @@ impl MultiDetector {
             self.agree(&before);
         }
         self.ended(begun)
-    }
-
-    /// As [`Detector::add`].
-    ///
-    /// # Errors
-    /// As there.
-    pub fn add(&mut self, body: &Body) -> Result<BodyId, Error> {
-        // All scenes number their bodies in the same way.
-        let ids = self.each(|detector| detector.add(body.clone()))?;
-        self.divisions.clear();
-        Ok(ids[0])
-    }
-
-    /// As [`Detector::remove`].
-    ///
-    /// # Errors
-    /// As there.
-    pub fn remove(&mut self, id: BodyId) -> Result<Body, Error> {
-        let mut bodies = self.each(|detector| detector.remove(id))?;
-        self.divisions.clear();
-        Ok(bodies.swap_remove(0))
-    }
-
-    /// As [`Detector::replace`].
-    ///
-    /// # Errors
-    /// As there.
-    pub fn replace(&mut self, id: BodyId, body: &Body) -> Result<(), Error> {
-        self.each(|detector| detector.replace(id, body.clone()))?;
-        self.divisions.clear();
-        Ok(())
     }
 
     /// As [`Detector::geometry`].

@@ -5,7 +5,7 @@ use super::engine::fits;
 use crate::error::Error;
 #[cfg(doc)]
 use crate::scene::Scene;
-use crate::scene::{Body, BodyId, Excluded, Exclusions};
+use crate::scene::{Body, BodyId, Excluded, Exclusions, Thickness};
 
 impl Detector {
     /// Replaces a body by another, of any mesh, under its number, from the next frame on. It keeps
@@ -18,7 +18,7 @@ impl Detector {
     /// changed.
     pub fn replace(&mut self, id: BodyId, body: Body) -> Result<(), Error> {
         let old = self.scene.get(id).ok_or_else(|| empty(id))?;
-        body.check_filter()?;
+        body.validate()?;
         self.fits(Some(old), &body)?;
         self.download_positions()?;
         *self.scene.get_mut(id).ok_or_else(|| empty(id))? = body;
@@ -35,7 +35,7 @@ impl Detector {
     /// [`Error::InvalidArgument`] for self-collision of a fixed body. [`Error::Input`] for more
     /// triangles than indices reach. On an error nothing has changed.
     pub fn add(&mut self, body: Body) -> Result<BodyId, Error> {
-        body.check_filter()?;
+        body.validate()?;
         self.fits(None, &body)?;
         self.download_positions()?;
         let id = self.scene.add(body);
@@ -69,6 +69,23 @@ impl Detector {
         if list != self.scene.left_out {
             self.download_positions()?;
             self.scene.left_out = list;
+            self.changed();
+        }
+        Ok(())
+    }
+
+    /// Sets the thickness of a body, from the next frame on. Cost: as of [`Detector::new`], at the next
+    /// frame. If it is the same, nothing changes. Another one ends the preparation of submissions.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] for a body that is not in the scene, and for a thickness that is no
+    /// length. On an error nothing has changed.
+    pub fn set_thickness(&mut self, id: BodyId, thickness: impl Into<Thickness>) -> Result<(), Error> {
+        let (old, thickness) = (self.scene.get(id).ok_or_else(|| empty(id))?, thickness.into());
+        thickness.check(old.name(), old.vertex_count())?;
+        if *old.thickness() != thickness {
+            self.download_positions()?;
+            self.scene.get_mut(id).ok_or_else(|| empty(id))?.thickness = thickness;
             self.changed();
         }
         Ok(())
@@ -123,6 +140,7 @@ impl Detector {
         self.engine.drop_all();
         self.portion.forget_slices();
         self.tolerances = None;
+        self.thick = None;
     }
 }
 

@@ -64,7 +64,10 @@ impl Detector {
             self.choose_instances();
         }
         let is_of_bodies = query.kind().is_of_bodies();
-        let reads = is_of_bodies || self.engine.has_instances && query.may_read_instances();
+        // Instances have no thickness.
+        let is_thick = query.kind().is_of_features() && self.is_thick();
+        let may_read = query.may_read_instances() && !is_thick;
+        let reads = is_of_bodies || self.engine.has_instances && may_read;
         if !reads && !self.engine.has_vertices {
             self.engine.drop_pipeline();
             self.engine.has_vertices = true;

@@ -20,6 +20,7 @@ mod resident;
 mod slices;
 mod stages;
 mod submit;
+mod thick;
 
 use crate::device::Device;
 use crate::device::emulator::start_threads;
@@ -33,6 +34,7 @@ use portion::Portion;
 use question::Question;
 use resident::Resident;
 use std::sync::Arc;
+use thick::Thick;
 
 /// A scene on a device, which answers queries.
 ///
@@ -65,6 +67,8 @@ pub struct Detector {
     scene: Scene,
     /// Default tolerances of pairs, once a query needed them.
     tolerances: Option<Arc<Tolerances>>,
+    /// Thickness of the bodies, once a query needed it.
+    thick: Option<Thick>,
     engine: Engine,
     portion: Portion,
     placed: Placed,
@@ -89,13 +93,14 @@ impl Detector {
     /// As of [`Detector::new`].
     pub(crate) fn with_share(device: Device, scene: Scene, share: Share) -> Result<Detector, Error> {
         start_threads()?;
-        scene.bodies().iter().try_for_each(Body::check_filter)?;
+        scene.bodies().iter().try_for_each(Body::validate)?;
         let all = |count: fn(&Body) -> usize| scene.bodies().iter().map(count).sum();
         fits(all(Body::face_count), all(Body::vertex_count))?;
         Ok(Detector {
             device: device.for_one(),
             scene,
             tolerances: None,
+            thick: None,
             engine: Engine::default(),
             portion: Portion::new(share),
             placed: Placed::default(),
@@ -108,17 +113,18 @@ impl Detector {
         &self.scene
     }
 
-    /// Combines a query with the tolerances of its pairs.
+    /// Combines a query with the tolerances and the thickness of its pairs.
     fn question(&mut self, query: Query) -> Result<Question, Error> {
         query.check()?;
         self.scene.may_exclude(query.kind())?;
         self.may_pair_bodies(&query)?;
+        let (query, radii) = self.thickened(query)?;
         let tolerances = match query.certified().map(|certified| certified.tolerance) {
             Some(Some(tolerance)) => Some(Arc::new(Tolerances::named(tolerance))),
             Some(None) => Some(self.default_tolerances()),
             None => None,
         };
-        Ok(Question { query, tolerances })
+        Ok(Question { query, tolerances, radii })
     }
 
     /// Default tolerances of the current bodies.

@@ -7,7 +7,7 @@ use super::precision::Precision;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::query::Refit;
-use nearmiss_kernels::abi::{Node, Point, Positions, ROOT, Span, VertexMotion};
+use nearmiss_kernels::abi::{Growth, Node, Point, Positions, ROOT, Span, VertexMotion};
 use nearmiss_kernels::entry::Kernels;
 use nearmiss_kernels::math::Vec3;
 
@@ -59,7 +59,7 @@ impl<R: Precision, V: Kernels> Enclosed<R, V> {
             still: device.buffer(t0.len())?,
             moving: device.buffer(t0.len())?,
             at: (Vec::new(), false),
-            volumes: Volumes::new(device, &tree, margin)?,
+            volumes: Volumes::new(device, &tree, Growth::margin(margin))?,
             tree,
             device: device.clone(),
         };

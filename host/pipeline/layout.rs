@@ -43,6 +43,10 @@ pub struct Layout {
     /// The pairs of bodies that are left out, as kernels read them: see `FilterArgs::left_out`;
     /// empty without such.
     pub left_out: Arc<Vec<u32>>,
+    /// The thickness of every vertex, a radius; empty in a scene without.
+    pub radii: Arc<Vec<f64>>,
+    /// Whether it differs within a body.
+    pub is_uneven: bool,
     /// The pairs of features that are excluded, as kernels read them.
     pub excluded: Arc<Excluded>,
     /// The bodies with triangles that may move, and those that are fixed.
@@ -101,7 +105,17 @@ impl Layout {
             all.starts.push(at);
         }
         all.faces = Arc::new(faces);
+        if bodies.iter().any(|body| body.thickness().largest() > 0.0) {
+            let radii = bodies.iter().flat_map(|body| body.thickness().of_vertices(body.vertex_count()));
+            all.radii = Arc::new(radii.collect());
+            all.is_uneven = bodies.iter().any(|body| body.thickness().same().is_none());
+        }
         if kind.is_of_features() { all.with_features(bodies, looks) } else { Some(all) }
+    }
+
+    /// Returns whether vertices have a thickness.
+    pub fn is_thick(&self) -> bool {
+        !self.radii.is_empty()
     }
 
     /// Leaves out pairs of bodies, each with the smaller number first, in ascending order. Cost:

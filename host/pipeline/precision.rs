@@ -4,7 +4,7 @@ use crate::mesh::Positions;
 use nearmiss_kernels::abi::{
     BelowPrecisionArgs, CullArgs, CutArgs, DiscreteArgs, FeaturesArgs, LeastArgs, MeshVerticesArgs,
     MortonArgs, NearArgs, NearExcludingArgs, PlaceArgs, Point, Positions as Frames, RungArgs, SolveArgs,
-    Span, StartsArgs,
+    Span, StartsArgs, ThickNearArgs, ThickRungArgs,
 };
 use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::math::{Real, Vec3};
@@ -47,6 +47,12 @@ pub trait Precision: Real + Send {
     type Near: Entry<Args = NearArgs<Self>>;
     /// The same without pairs that the scene excludes.
     type NearExcluding: Entry<Args = NearExcludingArgs<Self>>;
+    /// [`Precision::FeaturesAtRest`] for vertices with a thickness.
+    type ThickAtRest: Entry<Args = FeaturesArgs<Self>>;
+    /// Finds pairs of thick features within a distance, at one time.
+    type ThickNear: Entry<Args = ThickNearArgs<Self>>;
+    /// Turns triangle pairs into pairs of thick features whose boxes meet in a step.
+    type ThickFeatures: Entry<Args = FeaturesArgs<Self>>;
     /// Copies vertices to the meshes of deformable bodies.
     type MeshVertices: Entry<Args = MeshVerticesArgs<Self>>;
     /// Finds the least distance of triangles.
@@ -79,6 +85,8 @@ pub trait Precision: Real + Send {
     type Separate32: Entry<Args = RungArgs<Self>>;
     /// Separation, in f64.
     type Separate64: Entry<Args = RungArgs<Self>>;
+    /// Separation of features whose radii differ.
+    type SeparateThick: Entry<Args = ThickRungArgs<Self>>;
 
     /// Returns positions in this precision, exactly: f32 is only used if all bodies are f32.
     fn points(positions: &Positions) -> impl Iterator<Item = Vec3<Self>>;
@@ -113,6 +121,9 @@ impl Precision for f32 {
     type FeaturesAtRest = entry::narrow_features_at_rest_f32;
     type Near = entry::narrow_near_f32;
     type NearExcluding = entry::narrow_near_excluding_f32;
+    type ThickAtRest = entry::narrow_features_thick_at_rest_f32;
+    type ThickNear = entry::narrow_near_thick_f32;
+    type ThickFeatures = entry::narrow_features_thick_f32;
     type MeshVertices = entry::refit_meshes_vertices_f32;
     type Least = entry::narrow_least_f32;
     type Witness = entry::narrow_witness_f32;
@@ -129,6 +140,7 @@ impl Precision for f32 {
     type Slice = entry::narrow_slice_f32;
     type Separate32 = entry::narrow_separate_f32_f32;
     type Separate64 = entry::narrow_separate_f32_f64;
+    type SeparateThick = entry::narrow_separate_thick_f32;
 
     fn points(positions: &Positions) -> impl Iterator<Item = Vec3<f32>> {
         let (singles, doubles): (&[[f32; 3]], &[[f64; 3]]) = match positions {
@@ -170,6 +182,9 @@ impl Precision for f64 {
     type FeaturesAtRest = entry::narrow_features_at_rest_f64;
     type Near = entry::narrow_near_f64;
     type NearExcluding = entry::narrow_near_excluding_f64;
+    type ThickAtRest = entry::narrow_features_thick_at_rest_f64;
+    type ThickNear = entry::narrow_near_thick_f64;
+    type ThickFeatures = entry::narrow_features_thick_f64;
     type MeshVertices = entry::refit_meshes_vertices_f64;
     type Least = entry::narrow_least_f64;
     type Witness = entry::narrow_witness_f64;
@@ -186,6 +201,7 @@ impl Precision for f64 {
     type Slice = entry::narrow_slice_f64;
     type Separate32 = entry::narrow_separate_f64_f32;
     type Separate64 = entry::narrow_separate_f64_f64;
+    type SeparateThick = entry::narrow_separate_thick_f64;
 
     fn points(positions: &Positions) -> impl Iterator<Item = Vec3<f64>> {
         let (singles, doubles): (&[[f32; 3]], &[[f64; 3]]) = match positions {

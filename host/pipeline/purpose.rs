@@ -4,6 +4,8 @@
 pub const VERTICES: &str = "positions of all vertices";
 /// Positions at t = 0 alone, if vertices have two ends.
 pub const STARTS: &str = "positions of all vertices at t = 0";
+/// Thickness of vertices.
+pub const RADII: &str = "thickness of every vertex";
 /// Three vertices per triangle.
 pub const FACES: &str = "vertices of each triangle";
 /// Vertices of rigid bodies without a pose.

@@ -67,12 +67,18 @@ impl Tolerances {
         Tolerances { least, largest, finest, bodies }
     }
 
-    /// Returns the tolerances as kernels read them, by the first vertex of each body; empty if all
-    /// pairs have the same.
-    pub fn records(&self, starts: &[Offsets]) -> Vec<BodyTolerance> {
-        let of =
-            |(&tolerance, start): (&f64, &Offsets)| BodyTolerance { vertex: start.vertex, pad: 0, tolerance };
-        self.bodies.iter().zip(starts).map(of).collect()
+    /// Returns the tolerances and radii as kernels read them, by the first vertex of each body; empty
+    /// if all pairs have the same tolerance and `radii`, one a body, are empty.
+    pub fn records(&self, starts: &[Offsets], radii: &[f64]) -> Vec<BodyTolerance> {
+        let radius = |i: usize| radii.get(i).copied().unwrap_or(0.0);
+        let tolerance = |i: usize| self.bodies.get(i).copied().unwrap_or(self.largest);
+        let of = |i: usize| BodyTolerance {
+            vertex: starts[i].vertex,
+            pad: 0,
+            tolerance: tolerance(i),
+            radius: radius(i),
+        };
+        (0..self.bodies.len().max(radii.len())).map(of).collect()
     }
 }
 

@@ -291,7 +291,8 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
         }
         let faces = self.scene.faces.read(self.scene.faces.len())?;
         let turns = if own.is_at_rest() { Vec::new() } else { self.scene.vertices.turn_records()? };
-        let positions = Checked::new(self.scene.vertices.positions(own.is_at_rest())?, turns);
+        let positions = Checked::new(self.scene.vertices.positions(own.is_at_rest())?, turns)
+            .with_radii(self.scene.vertices.radii().to_vec());
         self.broad(query).check(&own.layout, &faces, &positions)
     }
 }

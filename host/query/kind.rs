@@ -164,8 +164,9 @@ macro_rules! kinds {
                 }
             }
 
-            /// Returns whether it tests vertices, edges and faces, instead of triangles.
-            pub(crate) fn is_of_features(self) -> bool {
+            /// Returns whether it tests vertices, edges and faces, instead of triangles. Then the
+            /// [thickness](crate::Thickness) of bodies counts.
+            pub fn is_of_features(self) -> bool {
                 match self {
                     $(QueryKind::$kind => <$kind as Question>::is_of_features(),)+
                 }

@@ -8,11 +8,12 @@ use crate::error::Error;
 ///
 /// ```
 /// let query = nearmiss::Query::near(0.01);
-/// assert!(query.check().is_ok() && nearmiss::Query::near(0.0).check().is_err());
+/// assert!(query.check().is_ok() && nearmiss::Query::near(-1.0).check().is_err());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Near {
-    /// Largest distance of a pair that is listed: a length above 0, in scene units.
+    /// Largest distance of a pair that is listed: a length above 0, in scene units. If a body has a
+    /// [thickness](crate::Thickness) it may be 0.
     pub distance: f64,
     /// How candidates are found.
     pub(crate) search: Search,
@@ -52,11 +53,11 @@ impl Question for Near {
         Some(ListedRows { bytes: size_of::<NearPair>(), within: Some(self.distance), advice })
     }
     fn check(&self) -> Result<(), Error> {
-        if self.distance > 0.0 && self.distance < f64::INFINITY {
+        if self.distance >= 0.0 && self.distance < f64::INFINITY {
             return Ok(());
         }
         Err(Error::InvalidArgument {
-            what: format!("distance must be finite and above 0, got {}", self.distance),
+            what: format!("distance must be finite and at least 0, got {}", self.distance),
             advice: "give a length in the unit of the scene".into(),
         })
     }

@@ -1,7 +1,7 @@
 //! A body: one mesh at one frame or at both ends of a step, with its kind and filter.
 
 use super::place::radius;
-use super::{BodyKind, CollisionFilter, DeviceMotion, Pose, PosePath, PoseStep};
+use super::{BodyKind, CollisionFilter, DeviceMotion, Pose, PosePath, PoseStep, Thickness};
 use crate::Error;
 #[cfg(doc)]
 use crate::mesh::Problem;
@@ -18,6 +18,7 @@ pub struct Body {
     pub(super) positions_t1: Option<Positions>,
     pub(super) kind: BodyKind,
     pub(super) filter: CollisionFilter,
+    pub(crate) thickness: Thickness,
     /// Poses of a rigid body at both ends of the step.
     pub(super) poses: [Pose; 2],
     /// Its path between them.
@@ -64,6 +65,7 @@ impl Body {
             positions_t1: None,
             kind: BodyKind::Deformable,
             filter: CollisionFilter::default(),
+            thickness: Thickness::default(),
             poses: [Pose::default(); 2],
             path: PosePath::default(),
             radius: 0.0,
@@ -95,6 +97,25 @@ impl Body {
         Body { filter, ..self }
     }
 
+    /// Sets the thickness: a radius, or one for each vertex.
+    ///
+    /// ```
+    /// use nearmiss::{Body, Mesh};
+    ///
+    /// let mesh = Mesh::new("sheet", vec![[0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]])?;
+    /// let sheet = Body::deformable(mesh).with_thickness(0.01);
+    /// assert_eq!(sheet.thickness().largest(), 0.01);
+    /// # Ok::<(), nearmiss::Error>(())
+    /// ```
+    pub fn with_thickness(self, thickness: impl Into<Thickness>) -> Body {
+        Body { thickness: thickness.into(), ..self }
+    }
+
+    /// Thickness of the body: see [`Thickness`].
+    pub fn thickness(&self) -> &Thickness {
+        &self.thickness
+    }
+
     /// Kind of the body: its motion from frame to frame.
     pub fn kind(&self) -> BodyKind {
         self.kind
@@ -110,19 +131,19 @@ impl Body {
         self.filter.self_collides(self.kind)
     }
 
-    /// Refuses self-collision of a fixed body, which would do nothing. Detectors check it, and
-    /// readers of bodies may.
+    /// Refuses self-collision of a fixed body, which would do nothing, and a thickness that is none.
+    /// Detectors check it, and readers of bodies may.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`], naming the body.
-    pub fn check_filter(&self) -> Result<(), Error> {
+    pub fn validate(&self) -> Result<(), Error> {
         if self.kind == BodyKind::Fixed && self.filter.self_collision == Some(true) {
             return Err(Error::InvalidArgument {
                 what: format!("self-collision of {}, which is fixed and never meets itself", self.name),
                 advice: "leave self-collision out, or make the body rigid or deformable".into(),
             });
         }
-        Ok(())
+        self.thickness.check(&self.name, self.vertex_count())
     }
 
     /// Poses of a rigid body at both ends of the step; stale if it [is
@@ -157,6 +178,12 @@ impl Body {
     /// device has turns.
     pub(crate) fn is_straight(&self) -> bool {
         self.path == PosePath::Straight && !self.is_device_resident()
+    }
+
+    /// Returns whether its vertices may leave straight lines in the step.
+    pub(crate) fn may_turn(&self) -> bool {
+        let is_resident = self.kind == BodyKind::Rigid && self.is_device_resident() && self.is_moving();
+        is_resident || self.turn().is_some()
     }
 
     /// Returns the pivot and the rotation vector of a rigid body with these poses. `None` if it does

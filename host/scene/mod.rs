@@ -15,6 +15,7 @@ mod pose;
 mod pose_step;
 pub(crate) mod poses;
 mod sides;
+mod thickness;
 
 pub use body::Body;
 pub use device_motion::{DeviceMotion, DevicePose, DeviceRows, Number};
@@ -27,6 +28,7 @@ pub use pose_step::{PosePath, PoseStep};
 pub use poses::Poses;
 #[doc(hidden)]
 pub use sides::{mean_side, of_edges};
+pub use thickness::Thickness;
 
 use std::fmt;
 
@@ -275,12 +277,11 @@ mod tests {
     #[test]
     fn self_collision_of_a_fixed_body_is_refused_by_name() {
         let body = |filter| Body::fixed(soup(3, 1, false).frames().remove(0)).with_filter(filter);
-        let text =
-            body(CollisionFilter::with_self_collision()).check_filter().expect_err("refused").to_string();
+        let text = body(CollisionFilter::with_self_collision()).validate().expect_err("refused").to_string();
         assert!(text.contains("self-collision of") && text.contains("fixed"), "{text}");
         assert!(
-            body(CollisionFilter::without_self_collision()).check_filter().is_ok()
-                && body(CollisionFilter::default()).check_filter().is_ok()
+            body(CollisionFilter::without_self_collision()).validate().is_ok()
+                && body(CollisionFilter::default()).validate().is_ok()
         );
     }
 }

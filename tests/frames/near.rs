@@ -7,3 +7,4 @@ mod known;
 mod oracle;
 mod planted;
 mod refused;
+mod thick;

@@ -2,6 +2,7 @@
 //! pairs whose distance is known exactly.
 
 mod exact;
+mod thick;
 
 use nearmiss::Query;
 use nearmiss::contacts::Kind;

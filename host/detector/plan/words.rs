@@ -17,7 +17,7 @@ pub const STAGES: [(&str, &str); 9] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 95] = [
+const KERNELS: [(&str, &str); 99] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
     ("place_turns", "rotation vectors and paths of bodies that turn"),
     ("place", "poses applied, uploads put in place, other bodies at rest"),
@@ -80,6 +80,8 @@ const KERNELS: [(&str, &str); 95] = [
     ("narrow_start_filter", "triangles that share a point at the start: boxes and signs"),
     ("narrow_start_wide", "the same in f64, of pairs left uncertain"),
     ("narrow_start_exact", "the same by exact signs, of pairs left uncertain"),
+    ("narrow_features_thick_at_rest", "vertex/face and edge/edge pairs by their boxes and thickness"),
+    ("narrow_features_thick", "the same in motion"),
     ("narrow_features_at_rest", "vertex/face and edge/edge pairs by their boxes"),
     ("narrow_features_before", "the same that meet before the earliest time"),
     ("narrow_features", "vertex/face and edge/edge pairs by their boxes in motion"),
@@ -90,6 +92,7 @@ const KERNELS: [(&str, &str); 95] = [
     ("narrow_isolate", "roots isolated, each with a certificate"),
     ("narrow_settle", "exact touching at the start"),
     ("narrow_slice", "the step in slices, and the search by boxes"),
+    ("narrow_separate_thick", "supporting planes, of radii that differ"),
     ("narrow_separate", "supporting planes"),
     ("narrow_divide", "candidates of bodies that turn, and the others"),
     ("narrow_turning_features", "features of those that do not stay apart, by balls on their arcs"),
@@ -102,6 +105,7 @@ const KERNELS: [(&str, &str); 95] = [
     ("narrow_bodies_least", "the least distance of each pair of bodies"),
     ("narrow_bodies_first", "the first triangles at that distance"),
     ("narrow_bodies_nearest", "nearest points of these"),
+    ("narrow_near_thick", "distances of feature pairs, and their radii"),
     ("narrow_near_excluding", "distances of feature pairs, without those excluded"),
     ("narrow_exclude_triangles", "triangle pairs that are not excluded"),
     ("narrow_exclude", "feature pairs that are not excluded"),

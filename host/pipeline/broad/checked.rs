@@ -1,7 +1,7 @@
 //! Positions as the checkers of volumes read them, after download.
 
 use crate::pipeline::precision::Precision;
-use nearmiss_kernels::abi::TurnRecord;
+use nearmiss_kernels::abi::{Growth, Point, TurnRecord};
 use nearmiss_kernels::bvh::turns::swell_of;
 use nearmiss_kernels::entry::Kernels;
 use nearmiss_kernels::math::Vec3;
@@ -10,12 +10,19 @@ use nearmiss_kernels::math::Vec3;
 pub struct Checked<R> {
     ends: Vec<Vec<Vec3<R>>>,
     turns: Vec<TurnRecord>,
+    /// The thickness of every vertex, rounded up; empty in a scene without.
+    radii: Vec<R>,
 }
 
 impl<R: Precision> Checked<R> {
     /// Returns positions, and the bodies that may turn.
     pub fn new(ends: Vec<Vec<Vec3<R>>>, turns: Vec<TurnRecord>) -> Self {
-        Checked { ends, turns }
+        Checked { ends, turns, radii: Vec::new() }
+    }
+
+    /// The same of vertices with a thickness.
+    pub fn with_radii(self, radii: Vec<R>) -> Self {
+        Checked { radii, ..self }
     }
 
     /// Returns how far a triangle may leave its straight lines.
@@ -24,6 +31,12 @@ impl<R: Precision> Checked<R> {
         let of = |record: &&TurnRecord| (record.vertex..record.end).contains(&face[0]) && record.turns();
         let record = self.turns.iter().find(of).copied().unwrap_or_default();
         swell_of(&record, face.map(|v| [t0, t1].map(|end| end[v as usize].wide())))
+    }
+
+    /// Returns how much the volume of a triangle grows.
+    pub fn grown(&self, face: [u32; 3], growth: Growth) -> f32 {
+        let radius = |v: u32| self.radii.get(v as usize).copied().unwrap_or(R::ZERO);
+        growth.of(&face.map(|v| Point { at: self.ends[0][v as usize], radius: radius(v) }))
     }
 
     /// Returns the volume around a triangle and everything within a margin.

@@ -17,7 +17,7 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::query::{BroadPhase, Query, WithVolume};
 use nearmiss_kernels::abi::{
-    BodyRecord, Counters, FilterArgs, InstanceTables, NodePair, Output, Pair, Positions, Relation,
+    BodyRecord, Counters, FilterArgs, Growth, InstanceTables, NodePair, Output, Pair, Positions, Relation,
     RelationWords, Span, TraverseFlags,
 };
 use nearmiss_kernels::bvh::Violation;
@@ -140,10 +140,10 @@ pub trait CandidateSearch<R: Precision>: Send {
     /// [`Error::Bug`] for an impossible value; device errors.
     fn learn(&mut self) -> Result<(), Error>;
 
-    /// Sets the margin: from the next fit on, volumes hold everything within `margin` of the
+    /// Sets the growth: from the next fit on, volumes hold everything within `growth` of the
     /// triangles. Returns whether the structure must be built again: true for fixed trees that
-    /// were built with a smaller margin.
-    fn set_margin(&mut self, margin: f32) -> bool;
+    /// were built with a smaller growth.
+    fn set_growth(&mut self, growth: Growth) -> bool;
 
     /// Sets the numbers of another query of the same shape.
     fn set(&mut self, _query: &Query) {}
@@ -256,7 +256,7 @@ pub trait CandidateSearch<R: Precision>: Send {
 }
 
 /// Returns the broad phase of a query over the bodies of a layout. At least one body moves. Its
-/// volumes hold everything within `margin` of the triangles.
+/// volumes hold everything within `growth` of the triangles.
 ///
 /// # Errors
 /// Device errors.
@@ -264,9 +264,9 @@ pub fn broad_phase<R: Precision>(
     device: &Device,
     layout: &Layout,
     query: &Query,
-    margin: f32,
+    growth: Growth,
 ) -> Result<Box<dyn CandidateSearch<R>>, Error> {
-    query.volume().with(New { device, layout, query, margin, precision: std::marker::PhantomData })
+    query.volume().with(New { device, layout, query, growth, precision: std::marker::PhantomData })
 }
 
 /// Returns the broad phase of a discrete query over bodies as instances. At least one body moves.
@@ -313,7 +313,7 @@ struct New<'a, R> {
     device: &'a Device,
     layout: &'a Layout,
     query: &'a Query,
-    margin: f32,
+    growth: Growth,
     precision: std::marker::PhantomData<R>,
 }
 
@@ -321,10 +321,10 @@ impl<R: Precision> WithVolume for New<'_, R> {
     type Out = Result<Box<dyn CandidateSearch<R>>, Error>;
 
     fn with<V: Kernels>(self) -> Self::Out {
-        let New { device, layout, query, margin, .. } = self;
+        let New { device, layout, query, growth, .. } = self;
         Ok(match query.broad_phase_on(device.is_gpu()) {
-            BroadPhase::Tree => Box::new(Trees::<R, V>::new(device, layout, query, margin)?),
-            BroadPhase::Tiles => Box::new(Tiles::<V>::new(device, layout, margin)?),
+            BroadPhase::Tree => Box::new(Trees::<R, V>::new(device, layout, query, growth)?),
+            BroadPhase::Tiles => Box::new(Tiles::<V>::new(device, layout, growth)?),
         })
     }
 }

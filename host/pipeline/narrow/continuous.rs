@@ -52,6 +52,8 @@ pub struct ContinuousNarrow {
     finest: Option<f64>,
     /// Whether pairs may be too large for the tolerance: see [`BelowPrecision`].
     below_precision: Option<BelowPrecision>,
+    /// Whether vertices have a thickness: then there is a separation, and no sample.
+    is_thick: bool,
     /// The smallest toi, for an earliest query.
     earliest: Option<Buffer<u64>>,
     /// The smallest toi of a sample, if it bounds the query.
@@ -116,10 +118,23 @@ impl ContinuousNarrow {
             ],
             finest: None,
             below_precision: None,
+            is_thick: false,
             earliest: None,
             bound: None,
             ordered: None,
         })
+    }
+
+    /// Makes it a phase of vertices with a thickness, if they have one.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn of_thick(mut self, device: &Device, layout: &Layout) -> Result<Self, Error> {
+        self.is_thick = layout.is_thick();
+        if layout.is_uneven {
+            self.rungs.thicken(device, &layout.radii)?;
+        }
+        Ok(self)
     }
 
     /// Adds the check of the start: it counts crossing pairs, with room for `few` pairs that
@@ -255,8 +270,11 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
                 let gap = self.solver.certified().filter(|certified| certified.is_apart());
                 let known = self.known(given.is_sample);
                 let numbers = (gap.map_or(0.0, Certified::listed_within), known);
-                let pairs = self.turning.divide(given, self.solver.certified())?;
-                if known.is_empty() {
+                let thick = (self.solver.certified(), 2.0 * self.rungs.largest_radius());
+                let pairs = self.turning.divide(given, thick)?;
+                if self.is_thick {
+                    given.features.run::<R, R::ThickFeatures>(given, pairs, numbers)
+                } else if known.is_empty() {
                     given.features.run::<R, R::Features>(given, pairs, numbers)
                 } else {
                     given.features.run::<R, R::FeaturesBefore>(given, pairs, numbers)

@@ -172,14 +172,14 @@ pub fn narrow<R: Precision>(
             Box::new(narrow)
         }
         Query::Continuous(continuous) => {
-            let narrow = ContinuousNarrow::all(device, continuous.solver, few)?;
+            let narrow = ContinuousNarrow::all(device, continuous.solver, few)?.of_thick(device, layout)?;
             Box::new(in_motion::<R>(narrow, device, (query.checks_start(), excludes), few)?)
         }
         Query::Earliest(earliest) => {
-            let narrow = ContinuousNarrow::first(device, earliest.solver, few)?;
+            let narrow = ContinuousNarrow::first(device, earliest.solver, few)?.of_thick(device, layout)?;
             Box::new(in_motion::<R>(narrow, device, (query.checks_start(), excludes), few)?)
         }
-        Query::Near(query) => Box::new(NearNarrow::new(device, (query.distance, excludes), few)?),
+        Query::Near(query) => Box::new(NearNarrow::new(device, query.distance, layout, few)?),
         Query::Distance(_) => Box::new(DistanceNarrow::new::<R>(device, few)?),
         Query::BodyPairs(query) => Box::new(BodiesNarrow::pairs(device, query.first, few)?),
         Query::BodyDistances(_) => Box::new(BodiesNarrow::distances(device, few)?),

@@ -4,16 +4,19 @@
 use super::features::Features;
 use super::{AnswerLists, Narrow, NarrowContext, growable};
 use crate::contacts::Entries;
-use crate::device::{Ahead, Device};
+use crate::device::{Ahead, Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::counts::Counts;
-use crate::pipeline::launch;
+use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{GrowableOutput, List, Named};
 use crate::pipeline::order::{Order, Ordering, Unordered};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
+use crate::pipeline::{launch, purpose};
 use crate::query::Query;
-use nearmiss_kernels::abi::{BodyTolerance, Counter, NearArgs, NearExcludingArgs, NearHit, Span, counter};
+use nearmiss_kernels::abi::{
+    BodyTolerance, Counter, NearArgs, NearExcludingArgs, NearHit, Span, ThickNearArgs, counter,
+};
 
 /// A step of the phase.
 #[derive(Clone, Copy)]
@@ -40,22 +43,27 @@ pub struct NearNarrow {
     ee_hits: List<NearHit>,
     /// Counter of hits that are not certainly within the distance.
     undecided: Counter,
+    /// The thickness of every vertex; empty in a scene without.
+    radii: Buffer<f64>,
     /// All hits in order, if the device orders them.
     ordered: Option<Order<NearHit>>,
 }
 
 impl NearNarrow {
-    /// Allocates the lists, with room for `few` hits, of a scene that excludes pairs or not.
+    /// Allocates the lists, with room for `few` hits, of a scene with or without a thickness and
+    /// excluded pairs.
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(device: &Device, (distance, excludes): (f64, bool), few: usize) -> Result<Self, Error> {
+    pub fn new(device: &Device, distance: f64, layout: &Layout, few: usize) -> Result<Self, Error> {
+        let excludes = !layout.excluded.is_empty();
         Ok(NearNarrow {
             distance,
             excludes,
             vf_hits: List::new(device, "vertex/face pairs within the distance", counter::VF_HITS, few)?,
             ee_hits: List::new(device, "edge/edge pairs within the distance", counter::EE_HITS, 2 * few)?,
             undecided: counter::UNDECIDED,
+            radii: device.of(purpose::RADII).upload(&layout.radii)?,
             ordered: None,
         })
     }
@@ -73,12 +81,16 @@ impl NearNarrow {
             counters: given.counters,
             distance: self.distance,
         };
-        let pairs = vf.capacity() + ee.capacity();
+        let count = vf.capacity() + ee.capacity();
+        if !self.radii.is_empty() {
+            let args = ThickNearArgs { near: args, radii: self.radii.span(), tables: given.excluded };
+            return launch::striding::<R::ThickNear>(given.device, count, &args);
+        }
         if self.excludes {
             let args = NearExcludingArgs { near: args, tables: given.excluded };
-            return launch::striding::<R::NearExcluding>(given.device, pairs, &args);
+            return launch::striding::<R::NearExcluding>(given.device, count, &args);
         }
-        launch::striding::<R::Near>(given.device, pairs, &args)
+        launch::striding::<R::Near>(given.device, count, &args)
     }
 }
 
@@ -94,7 +106,12 @@ impl<R: Precision> Narrow<R> for NearNarrow {
     fn run(&mut self, step: usize, given: &NarrowContext<R>) -> Result<(), Error> {
         match Step::ALL[step] {
             Step::Features => {
-                given.features.run::<R, R::FeaturesAtRest>(given, given.pairs, (self.distance, Span::EMPTY))
+                let within = (self.distance, Span::EMPTY);
+                if self.radii.is_empty() {
+                    given.features.run::<R, R::FeaturesAtRest>(given, given.pairs, within)
+                } else {
+                    given.features.run::<R, R::ThickAtRest>(given, given.pairs, within)
+                }
             }
             Step::Near => self.measure(given),
         }

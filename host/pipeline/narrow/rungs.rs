@@ -9,7 +9,8 @@ use crate::pipeline::{launch, purpose};
 use crate::query::{Certified, CertifiedPrecision};
 use bytemuck::Pod;
 use nearmiss_kernels::abi::{
-    Begun, BodyTolerance, Counter, Hit, Listed, Output, Pair, RungArgs, RungFlags, Span, counter,
+    Begun, BodyTolerance, Counter, Hit, Listed, Output, Pair, RungArgs, RungFlags, Span, ThickRungArgs,
+    counter,
 };
 use nearmiss_kernels::entry::Entry;
 
@@ -29,6 +30,8 @@ enum Rung {
     Separate32,
     /// Separation, in f64.
     Separate64,
+    /// Separation of features whose radii differ, in f64.
+    SeparateThick,
 }
 
 /// Returns the rungs of a solver.
@@ -68,7 +71,7 @@ impl Rung {
     fn left(self) -> usize {
         match self {
             Rung::Isolate32 | Rung::Separate32 => 0,
-            Rung::Isolate64 | Rung::Settle | Rung::Slice | Rung::Separate64 => 1,
+            Rung::Isolate64 | Rung::Settle | Rung::Slice | Rung::Separate64 | Rung::SeparateThick => 1,
         }
     }
 }
@@ -94,6 +97,8 @@ pub struct Rungs {
     asked: Option<Left>,
     /// Tolerances of bodies; empty if all pairs have the same.
     tolerances: Buffer<BodyTolerance>,
+    /// The thickness of every vertex, if it differs within a body; else empty.
+    radii: Buffer<f64>,
     /// The values in `tolerances`.
     held: Vec<BodyTolerance>,
 }
@@ -137,8 +142,21 @@ impl Rungs {
         let asked = || lists(device, ASKED, capacities.asked).map(Left::Pairs);
         let asked = rungs.contains(&Rung::Isolate64).then(asked).transpose()?;
         let tolerances = device.of(purpose::TOLERANCES).buffer(0)?;
+        let radii = device.of(purpose::RADII).buffer(0)?;
         let certified = certified.copied().unwrap_or_default();
-        Ok(Rungs { certified, rungs, left, names, asked, tolerances, held: Vec::new() })
+        Ok(Rungs { certified, rungs, left, names, asked, tolerances, radii, held: Vec::new() })
+    }
+
+    /// Makes them the one rung of vertices whose thickness differs within a body: in f64, from the
+    /// first list to the last.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn thicken(&mut self, device: &Device, radii: &[f64]) -> Result<(), Error> {
+        self.radii = device.of(purpose::RADII).upload(radii)?;
+        self.rungs = &[Rung::SeparateThick];
+        (self.left, self.names, self.asked) = (Vec::new(), Vec::new(), None);
+        Ok(())
     }
 
     /// Sets the numbers of another solver of the same precision, and the tolerances of bodies;
@@ -158,6 +176,11 @@ impl Rungs {
             self.held = tolerances.to_vec();
         }
         Ok(())
+    }
+
+    /// Returns the largest radius of a body.
+    pub fn largest_radius(&self) -> f64 {
+        self.held.iter().map(|record| record.radius).fold(0.0, f64::max)
     }
 
     /// Returns the tolerances of bodies; empty if all pairs have the same.
@@ -246,7 +269,7 @@ impl Rungs {
                 pad: 0,
             };
             let capacity = before.map_or(first[0].capacity() + first[1].capacity(), Left::capacity);
-            start::<R>(rung, given.device, capacity, &args)
+            start::<R>(rung, given.device, capacity, (&args, self.radii.span()))
         };
         let mut before = None;
         for (at, &rung) in self.rungs.iter().enumerate() {
@@ -268,7 +291,7 @@ fn start<R: Precision>(
     rung: Rung,
     device: &Device,
     capacity: usize,
-    args: &RungArgs<R>,
+    (args, radii): (&RungArgs<R>, Span<f64>),
 ) -> Result<(), Error> {
     match rung {
         Rung::Isolate32 => launch::striding::<R::Isolate32>(device, capacity, args),
@@ -284,5 +307,9 @@ fn start<R: Precision>(
         }
         Rung::Separate32 => launch::at_once::<R::Separate32>(device, capacity, args),
         Rung::Separate64 => launch::at_once::<R::Separate64>(device, capacity, args),
+        Rung::SeparateThick => {
+            let args = ThickRungArgs { rung: *args, radii };
+            launch::at_once::<R::SeparateThick>(device, capacity, &args)
+        }
     }
 }

@@ -97,7 +97,7 @@ impl Turning {
     pub fn divide<R: Precision>(
         &mut self,
         given: &NarrowContext<R>,
-        certified: Option<&Certified>,
+        (certified, radii): (Option<&Certified>, f64),
     ) -> Result<Output<Pair>, Error> {
         let Some(certified) = certified.filter(|_| !given.frames.turns.is_empty()) else {
             return Ok(given.pairs);
@@ -118,7 +118,7 @@ impl Turning {
             let [vf, ee] = self.candidates.each_ref().map(|list| list.output(given.counters));
             let (frames, rest) = R::in_f64(given.frames, given.rest);
             let facets = given.features.facets();
-            let gap = certified.min_separation + certified.tolerance.unwrap_or(0.0);
+            let gap = certified.min_separation + certified.tolerance.unwrap_or(0.0) + radii;
             let args = TurningFeaturesArgs { frames, rest, facets, pairs: turning, vf, ee, gap };
             launch::striding::<narrow_turning_features>(given.device, self.turning.capacity(), &args)?;
         }

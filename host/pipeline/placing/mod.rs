@@ -18,7 +18,7 @@ use nearmiss_kernels::abi::{
     KEEPS_END, LENT, LENT_POSES, POSED, PlaceArgs, Placement, Point, PoseRecord, Positions, RESTING, Span,
     StartsArgs, TurnRecord, TurnsArgs, UPLOADED, VertexMotion as Ends,
 };
-use nearmiss_kernels::math::{Real, Vec3};
+use nearmiss_kernels::math::{Real, Vec3, round};
 use turns::Turns;
 
 /// A body that a frame moves.
@@ -67,14 +67,16 @@ impl<R: Precision> Vertices<R> {
         }
     }
 
-    /// Sets the first vertices: those of the bodies, one behind the other. A body that stands still
-    /// has the same positions at both ends.
-    fn write<'a>(&mut self, bodies: impl Iterator<Item = &'a Body>) -> Result<(), Error> {
+    /// Sets the first vertices: those of the bodies, one behind the other, with these radii. A body
+    /// that stands still has the same positions at both ends.
+    fn write<'a>(&mut self, bodies: impl Iterator<Item = &'a Body>, radii: &[R]) -> Result<(), Error> {
+        let mut radii = radii.iter().copied().chain(std::iter::repeat(R::ZERO));
+        let mut radius = || radii.next().unwrap_or(R::ZERO);
         match self {
             Vertices::Still(buffer) => {
                 let mut points = Vec::with_capacity(buffer.len());
                 for body in bodies {
-                    points.extend(R::points(body.positions_t0()).map(Point::from));
+                    points.extend(R::points(body.positions_t0()).map(|at| Point { at, radius: radius() }));
                 }
                 buffer.write(&points)
             }
@@ -83,7 +85,10 @@ impl<R: Precision> Vertices<R> {
                 for body in bodies {
                     let [t0, t1] = body.ends();
                     let both = R::points(t0).zip(R::points(t1));
-                    ends.extend(both.map(|(t0, t1)| Ends { t0: t0.into(), t1: t1.into() }));
+                    ends.extend(both.map(|(t0, t1)| {
+                        let radius = radius();
+                        Ends { t0: Point { at: t0, radius }, t1: Point { at: t1, radius } }
+                    }));
                 }
                 buffer.write(&ends)
             }
@@ -125,6 +130,8 @@ pub struct Placing<R: Precision> {
     placed: Vec<Placement>,
     /// Data of bodies in memory of the caller; empty if there are none.
     arrays: DeviceArrays,
+    /// The thickness of every vertex, rounded up, here and on the device; empty in a scene without.
+    thick: (Vec<R>, Buffer<R>),
     /// The largest coordinate of fixed bodies.
     fixed: f64,
     /// Bodies that may turn in the last frame's step.
@@ -150,6 +157,8 @@ impl<R: Precision> Placing<R> {
             at += if is_rigid(&body) { body.vertex_count() as u32 } else { 0 };
             start
         });
+        let radii: Vec<R> = layout.radii.iter().map(|&radius| R::of(round::up(radius).into())).collect();
+        let of_radii = device.of(purpose::RADII).upload(&radii)?;
         let mut placing = Placing {
             vertices: Vertices::new(device, moving, layout.starts[layout.bodies()].vertex as usize)?,
             at_rest: device.buffer(0)?,
@@ -164,11 +173,12 @@ impl<R: Precision> Placing<R> {
             poses: device.buffer(0)?,
             placed: Vec::new(),
             arrays: DeviceArrays::new(&device.of(purpose::DEVICE_ARRAYS))?,
+            thick: (radii, of_radii),
             fixed: largest(bodies.iter().filter(|body| body.kind() == BodyKind::Fixed)),
             turns: Turns::new(device)?,
             last: Last::Host,
         };
-        placing.vertices.write(bodies.iter())?;
+        placing.vertices.write(bodies.iter(), &placing.thick.0)?;
         let moved: Vec<Moved> = (0..bodies.len())
             .filter(|&i| is_rigid(&&bodies[i]) || bodies[i].device_motion().is_some())
             .map(|body| Moved { body, rests: false })
@@ -193,6 +203,11 @@ impl<R: Precision> Placing<R> {
     /// Returns the vertices of rigid bodies, as they are without a pose.
     pub fn rest(&self) -> Span<Point<R>> {
         self.rest.span()
+    }
+
+    /// Returns the thickness of every vertex, rounded up; empty in a scene without.
+    pub fn radii(&self) -> &[R] {
+        &self.thick.0
     }
 
     /// Downloads the bodies that may turn.
@@ -285,7 +300,7 @@ impl<R: Precision> Placing<R> {
         if all && moved.iter().all(comes) {
             self.keeps.fill(false);
             self.last = Last::Host;
-            return self.vertices.write(bodies.iter());
+            return self.vertices.write(bodies.iter(), &self.thick.0);
         }
         let moving = matches!(self.vertices, Vertices::Moving(_));
         let ends = if moving { 2 } else { 1 };
@@ -339,7 +354,7 @@ impl<R: Precision> Placing<R> {
             self.uploaded = Vertices::new(&device.of(purpose::UPLOADED), moving, uploaded as usize)?;
         }
         if uploaded > 0 {
-            self.uploaded.write(uploads.iter().map(|&i| &bodies[i]))?;
+            self.uploaded.write(uploads.iter().map(|&i| &bodies[i]), &[])?;
         }
         write(&device.of(purpose::POSES), &mut self.poses, &poses)?;
         if placed != self.placed {
@@ -359,6 +374,7 @@ impl<R: Precision> Placing<R> {
             lent: self.arrays.places.span(),
             vertices: self.vertices.span(),
             later: self.later.span(),
+            radii: self.thick.1.span(),
             seen: self.arrays.seen.span(),
             most: if R::WIDE { mesh::MAX_ABS_F64 } else { mesh::MAX_ABS_F32.into() },
             count: before,

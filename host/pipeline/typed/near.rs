@@ -8,6 +8,7 @@ use crate::query::{BoundingVolume, Certified, CertifiedPrecision, Continuous, Re
 use crate::research::QueryExt;
 use crate::samples::soup;
 use crate::scene::Scene;
+use nearmiss_kernels::abi::Growth;
 
 /// Returns how many pairs of random triangles certainly come within a tenth; `grows` is whether
 /// volumes grow for it.
@@ -18,7 +19,7 @@ fn certain(query: Query, grows: bool) -> usize {
     let layout = Arc::new(Layout::new(bodies, query.kind()));
     let (mut pipeline, at) = one(&device, bodies, &layout, query);
     if !grows {
-        pipeline.scene.broads[pipeline.queries[at].broad].phase.set_margin(0.0);
+        pipeline.scene.broads[pipeline.queries[at].broad].phase.set_growth(Growth::default());
     }
     let (found, _) = pipeline.frame(at).expect("a frame");
     let Listed::Hits { hits, .. } = found.listed else { panic!("a continuous query lists contacts") };

@@ -15,7 +15,7 @@ use crate::pipeline::wear::Wear;
 use crate::query::Query;
 use crate::scene::Body;
 use crate::stages::Stage;
-use nearmiss_kernels::abi::{BodyRecord, FilterArgs, Span};
+use nearmiss_kernels::abi::{BodyRecord, FilterArgs, Growth, Span};
 use std::sync::Arc;
 
 /// Initial capacity, in candidates per triangle. Cloth at rest has 8, cloth swept over a step 50. A
@@ -144,7 +144,7 @@ impl<R: Precision> QueryMemory<R> {
         self.records.span()
     }
 
-    /// Readies a frame: margins of the volumes, positions, and values that depend on positions.
+    /// Readies a frame: growth of the volumes, positions, and values that depend on positions.
     /// Returns whether tiles or trees must be built for it.
     ///
     /// # Errors
@@ -159,19 +159,21 @@ impl<R: Precision> QueryMemory<R> {
         } else {
             scene.ready(self.is_at_rest())?;
         }
-        let margin = self.margin(self.is_of_instances || scene.vertices.turns());
+        let growth = self.growth(self.is_of_instances || scene.vertices.turns());
         let broad = &mut scene.broads[self.broad];
-        let grows = broad.phase.set_margin(margin);
+        let grows = broad.phase.set_growth(growth);
         broad.is_built &= !grows;
         Ok(!broad.is_built)
     }
 
-    /// Returns the margin of the volumes. A pair that turns may stay undecided within half a
+    /// Returns the growth of the volumes. A pair that turns may stay undecided within half a
     /// tolerance, and is then a candidate of every volume. Boxes of instances are of the meshes' frames:
     /// any pair that may stay undecided is to be a candidate.
-    pub fn margin(&self, turns: bool) -> f32 {
+    pub fn growth(&self, turns: bool) -> Growth {
         let tolerance = self.query.certified().and_then(|certified| certified.tolerance);
-        growth(self.query.listed_within() + tolerance.filter(|_| turns).unwrap_or(0.0))
+        let margin = growth(self.query.listed_within() + tolerance.filter(|_| turns).unwrap_or(0.0));
+        let is_thick = self.layout.is_thick() && self.query.kind().is_of_features();
+        Growth { margin, is_thick: is_thick.into() }
     }
 
     /// Returns the indices of the narrow phase's steps.

@@ -21,7 +21,8 @@ use crate::pipeline::{Layout, QueryParts, SceneParts};
 use crate::query::{self, BoundingVolume, Query, QueryKind};
 use crate::scene::Body;
 use nearmiss_kernels::abi::{
-    BodyRecord, Counters, FilterArgs, LeftOutArgs, Pair, Point, Positions, Span, TraverseFlags, counter,
+    BodyRecord, Counters, FilterArgs, Growth, LeftOutArgs, Pair, Point, Positions, Span, TraverseFlags,
+    counter,
 };
 use nearmiss_kernels::entry::traverse_left_out;
 use nearmiss_kernels::math::Vec3;
@@ -184,7 +185,11 @@ impl<R: Precision> SceneMemory<R> {
             BroadKey::Instances => instance_phase(&self.device, layout)?,
             BroadKey::Motion { is_at_rest } => motion_phase(&self.device, layout, is_at_rest, margin)?,
             BroadKey::Bodies(_) => pair_phase(&self.device, layout, query, margin)?,
-            BroadKey::Tiles(..) | BroadKey::Trees(_) => broad_phase(&self.device, layout, query, margin)?,
+            BroadKey::Tiles(..) | BroadKey::Trees(_) => {
+                let is_thick = layout.is_thick() && query.kind().is_of_features();
+                let growth = Growth { margin, is_thick: is_thick.into() };
+                broad_phase(&self.device, layout, query, growth)?
+            }
         };
         self.broads.push(Broad { key, phase, is_built: false });
         Ok(self.broads.len() - 1)

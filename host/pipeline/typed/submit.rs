@@ -246,7 +246,7 @@ impl<R: Precision> QueryMemory<R> {
         submitted: &Submitted,
         seen: Span<u64>,
     ) -> Result<(), Error> {
-        scene.broads[self.broad].phase.set_margin(self.margin(scene.vertices.turns()));
+        scene.broads[self.broad].phase.set_growth(self.growth(scene.vertices.turns()));
         scene.device.beside(|| self.counters.clear())?;
         [Stage::Fit, Stage::Refit].into_iter().try_for_each(|stage| self.run(scene, stage))?;
         scene.device.join();

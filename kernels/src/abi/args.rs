@@ -1,8 +1,8 @@
 //! One argument block for each kernel: its launch arguments, by value.
 
 use super::{
-    BodyRecord, Counter, Counters, FilterArgs, Inner, LeafPlace, Link, Merge, MortonFlags, Node, NodeFilter,
-    Output, Pair, Point, Span, TraverseFlags, TreeBody, Treelet, TurnRecord, Unit, VertexMotion,
+    BodyRecord, Counter, Counters, FilterArgs, Growth, Inner, LeafPlace, Link, Merge, MortonFlags, Node,
+    NodeFilter, Output, Pair, Point, Span, TraverseFlags, TreeBody, Treelet, TurnRecord, Unit, VertexMotion,
 };
 use crate::math::Real;
 use bytemuck::{Pod, Zeroable};
@@ -194,11 +194,8 @@ arguments! {
         links: Span<Link>,
         /// Out: the leaves.
         nodes: Span<Node<V>>,
-        /// How much the volumes grow: half of the distance within which pairs are listed; 0 for
-        /// touching alone.
-        margin: f32,
-        /// Nothing.
-        pad: u32,
+        /// How much the volumes grow.
+        growth: Growth,
     }
     /// `fit_groups_obb`: the oriented boxes of inner nodes of few leaves, around the points below
     /// them.
@@ -217,11 +214,12 @@ arguments! {
         firsts: Span<u32>,
         /// Out: the nodes.
         nodes: Span<Node<V>>,
+        /// How much the volumes grow.
+        growth: Growth,
         /// The root's index.
         root: u32,
-        /// How much the volumes grow: half of the distance within which pairs are listed; 0 for
-        /// touching alone.
-        margin: f32,
+        /// Zero.
+        pad: u32,
     }
     /// `refit_levels`: the volumes of levels `from` to `to`, deepest first.
     RefitArgs<V: Pod> {
@@ -258,11 +256,8 @@ arguments! {
         ticket: Span<u64>,
         /// Out: the volumes.
         nodes: Span<Node<V>>,
-        /// How much the volumes grow: half of the distance within which pairs are listed; 0 for
-        /// touching alone.
-        margin: f32,
-        /// Nothing.
-        pad: u32,
+        /// How much the volumes grow.
+        growth: Growth,
     }
     /// `traverse_leaves`, `traverse_units`: leaf against tree.
     TraverseArgs<V: Pod> {

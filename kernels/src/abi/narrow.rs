@@ -1,8 +1,8 @@
 //! Argument blocks of the last stage: from triangle pairs to contacts.
 
 use super::{
-    Begun, BodyTolerance, Counters, DiscreteFlags, Facet, Hit, NearHit, NearestHit, Output, Pair, Point,
-    Positions, RungFlags, Span, TurnRecord,
+    Begun, BodyTolerance, Counters, DiscreteFlags, ExclusionTables, Facet, Hit, NearHit, NearestHit, Output,
+    Pair, Point, Positions, RungFlags, Span, TurnRecord,
 };
 use crate::math::Real;
 use crate::prim::inclusion::Params;
@@ -149,6 +149,15 @@ arguments! {
         /// The distance, a length.
         distance: f64,
     }
+    /// `narrow_near_thick`: the same, of vertices with a thickness.
+    ThickNearArgs<R: Real> {
+        /// Candidates, lists, the distance.
+        near: NearArgs<R>,
+        /// The thickness of every vertex.
+        radii: Span<f64>,
+        /// Pairs that the scene excludes.
+        tables: ExclusionTables,
+    }
     /// `narrow_below_precision`: hits too large for the solver's precision to resolve the tolerance.
     BelowPrecisionArgs<R: Real> {
         /// Positions.
@@ -212,6 +221,13 @@ arguments! {
         flags: RungFlags,
         /// Zero.
         pad: u32,
+    }
+    /// `narrow_separate_thick`: the pairs that come within a separation and their radii.
+    ThickRungArgs<R: Real> {
+        /// Pairs, lists, parameters.
+        rung: RungArgs<R>,
+        /// The thickness of every vertex.
+        radii: Span<f64>,
     }
     /// `narrow_turning`: the pairs of bodies that turn, in f64.
     TurningArgs {

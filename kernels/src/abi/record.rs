@@ -245,19 +245,21 @@ impl Merge {
     }
 }
 
-/// A vertex that stands still, padded so that one aligned access of 16 bytes (f64: two) fetches it.
+/// A vertex that stands still, and its thickness: one aligned access of 16 bytes (f64: two) fetches
+/// it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(16))]
 pub struct Point<R> {
     /// The position.
     pub at: Vec3<R>,
-    pad: R,
+    /// The thickness there, a radius, rounded up to a number of f32; 0 in a scene without.
+    pub radius: R,
 }
 const _: () = assert!(size_of::<Point<f32>>() == 16 && size_of::<Point<f64>>() == 32);
 
 impl<R: Real> From<Vec3<R>> for Point<R> {
     fn from(at: Vec3<R>) -> Self {
-        Point { at, pad: R::ZERO }
+        Point { at, radius: R::ZERO }
     }
 }
 
@@ -272,7 +274,7 @@ pub struct VertexMotion<R> {
 }
 const _: () = assert!(size_of::<VertexMotion<f32>>() == 32 && size_of::<VertexMotion<f64>>() == 64);
 
-// SAFETY: four scalars of R (asserted above: no padding but the named one), each Zeroable and Pod.
+// SAFETY: four scalars of R (asserted above: no padding), each Zeroable and Pod.
 unsafe impl<R: Real> Zeroable for Point<R> {}
 // SAFETY: as above.
 unsafe impl<R: Real> Pod for Point<R> {}

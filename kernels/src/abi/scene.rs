@@ -23,7 +23,7 @@ pub struct BodyRecord {
 }
 const _: () = assert!(size_of::<BodyRecord>() == 24);
 
-/// The tolerance of a body, from its first vertex on.
+/// The tolerance and the thickness of a body, from its first vertex on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct BodyTolerance {
@@ -33,8 +33,10 @@ pub struct BodyTolerance {
     pub pad: u32,
     /// A length; infinite for a body without an edge of a length, which takes that of the other.
     pub tolerance: f64,
+    /// A radius, that of all its vertices; 0 without a thickness.
+    pub radius: f64,
 }
-const _: () = assert!(size_of::<BodyTolerance>() == 16);
+const _: () = assert!(size_of::<BodyTolerance>() == 24);
 
 /// [`BodyRecord::environment`]: meets bodies of every environment. Greater than any other.
 pub const EVERY: u32 = NodeFilter::NUMBER;
@@ -200,6 +202,8 @@ arguments! {
         /// In and out, if vertices have one end: the ends of steps of which the caller's memory had
         /// both; empty without such.
         later: Span<Point<R>>,
+        /// The thickness of every vertex, rounded up; empty in a scene without.
+        radii: Span<R>,
         /// Out: checks of the caller's numbers, see [`seen`]; zero before.
         seen: Span<u64>,
         /// The largest size of a coordinate that can be computed with.

@@ -1,6 +1,6 @@
 //! Tiles: the arguments of their kernels.
 
-use super::{Counters, FilterArgs, Node, NodeFilter, Output, Pair, Positions, Span, TraverseFlags};
+use super::{Counters, FilterArgs, Growth, Node, NodeFilter, Output, Pair, Positions, Span, TraverseFlags};
 use crate::math::Real;
 use bytemuck::{Pod, Zeroable};
 
@@ -39,9 +39,7 @@ arguments! {
         /// The first node above tiles.
         above: u32,
         /// How much volumes grow.
-        margin: f32,
-        /// Nothing.
-        pad: u32,
+        growth: Growth,
     }
     /// `refit_tiles`: nodes above other nodes.
     RefitTilesArgs<V: Pod> {
@@ -81,9 +79,7 @@ arguments! {
         /// How many nodes are below them.
         below_count: u32,
         /// How much volumes grow.
-        margin: f32,
-        /// Nothing.
-        pad: u32,
+        growth: Growth,
     }
     /// `traverse_tiles`: pairs of tiles that overlap.
     TilePairsArgs<V: Pod> {

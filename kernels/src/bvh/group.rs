@@ -1,7 +1,7 @@
 //! Nodes of few leaves, whose volume is fitted to the points below them instead of merged.
 
 use super::turns::swell;
-use crate::abi::{Link, Positions, Span};
+use crate::abi::{Growth, Link, Positions, Span};
 use crate::bv::{Points, Volume};
 use crate::exec::Lane;
 use crate::math::{Real, Vec3};
@@ -44,6 +44,22 @@ impl<R: Real, L: Lane> GroupPoints<'_, R, L> {
         (first..=last)
             .map(|leaf| swell(self.lane, &self.frames, self.face(leaf)))
             .fold(0.0, |most, own| if own > most { own } else { most })
+    }
+
+    /// How much the volume grows: by the thickest triangle.
+    #[inline(always)]
+    pub fn growth(&self, growth: Growth) -> f32 {
+        if growth.is_thick == 0 {
+            return growth.margin;
+        }
+        let [first, last] = self.leaves;
+        let of = |v: u32| match self.frames.moving.is_empty() {
+            true => self.lane.read(self.frames.still, v),
+            false => self.lane.read(self.frames.moving, v).t0,
+        };
+        (first..=last)
+            .map(|leaf| growth.of(&self.face(leaf).map(of)))
+            .fold(growth.margin, |most, own| if own > most { own } else { most })
     }
 }
 

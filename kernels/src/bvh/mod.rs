@@ -13,6 +13,7 @@ pub mod pieces;
 pub mod placing;
 pub mod relation;
 pub mod rims;
+pub mod thick;
 pub mod tiles;
 pub mod turns;
 

@@ -240,6 +240,12 @@ pub const DISTANCE_CERTAIN: f64 = 32.0 * U64;
 /// Every listed pair is within the requested distance plus this: `256u`, the sum of both and of
 /// their roundings. Ratio.
 pub const DISTANCE_LISTED: f64 = 256.0 * U64;
+/// Points of thick features count as nearest if none are nearer by more than this: `512u`, for twice
+/// [`DISTANCE_ERROR`] between a side's computed distance and the shortest one. Ratio.
+pub const DISTANCE_TIED: f64 = 512.0 * U64;
+/// By how much a parameter along a side may be wrong, over the length of the side: `64u` of the reach,
+/// for `30u sqrt 3`. Ratio.
+pub const DISTANCE_WEIGHT: f64 = 64.0 * U64;
 /// A sum and a product of positive terms are below their computed value times this, and so is its
 /// square: `1 + 8u`. Ratio.
 pub const DISTANCE_UP: f64 = 1.0 + 8.0 * U64;

@@ -41,6 +41,10 @@
 //! room. It drops no pair with a reach outside of `DISTANCE_FILTERED`: there squares of f32 could
 //! leave the range.
 
+mod thick;
+
+pub use thick::{Radii, Range, ThickFilter, thick_edge_edge, thick_vertex_face};
+
 use crate::exec::RowMap;
 use crate::math::tolerance::{
     DISTANCE_CERTAIN, DISTANCE_ERROR, DISTANCE_FILTERED, DISTANCE_SCALE, DISTANCE_SMALL, DISTANCE_UP, U32,
@@ -155,6 +159,13 @@ fn within<const TRIANGLE: bool>(of: [Vec3<f64>; 3], distance: f64) -> Option<Nea
 pub fn distance<R: Real, const TRIANGLE: bool>(corners: [Vec3<R>; 4]) -> (f64, [f64; 2]) {
     let Scaled { found, down, .. } = Scaled::of::<TRIANGLE>(differences::<R, f64, TRIANGLE>(corners));
     (Real::sqrt(found.squared) * down, found.at)
+}
+
+/// The distance of two features by their differences, as the parent computes it: a triangle's, or
+/// those of two edges.
+#[inline(always)]
+pub fn shortest<const TRIANGLE: bool>(of: [Vec3<f64>; 3]) -> f64 {
+    Real::sqrt(nearest::<f64, TRIANGLE>(of).squared)
 }
 
 /// The nearest point, of differences that are multiplied by `up` so that their squares are numbers.

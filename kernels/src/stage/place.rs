@@ -11,14 +11,14 @@
 //! After    A vertex of a rigid body = [`moved`] by its pose at either end, in f64. (A scene with a
 //!          rigid body has positions in f64.)
 //!          An uploaded vertex, or one in the caller's memory, is copied. A resting one has its
-//!          later position at both ends.
+//!          later position at both ends. All have their thickness.
 //!          Vertices of other bodies are unchanged. The answer refers to these vertices.
 //!          `seen` = (first vertex that is invalid, largest coordinate) of the caller's numbers. An
 //!          invalid vertex means no answer.
 //!          With one end, a step in the caller's memory keeps its end in `later`. A resting body is
 //!          copied from there.
 //! Room     fixed; cannot run out.
-//! Cost     16 B a point in and 16 or 32 B out (f32), 64 B a pose from cache. 50 operations a
+//! Cost     16 B a point in and 16 or 32 B out (f32), 4 B a thickness, 64 B a pose from cache. 50 operations a
 //!          vertex and end.
 
 use crate::abi::{
@@ -131,9 +131,11 @@ pub fn place<R: Real, B: Block>(block: &mut B, args: &PlaceArgs<R>) {
                     point
                 }
             };
+            let radius = if args.radii.is_empty() { R::ZERO } else { lane.read(args.radii, vertex) };
+            let thick = |point: Point<R>| Point { radius, ..point };
             if still {
                 let point = end_of(0);
-                lane.write(args.vertices.still, vertex, point);
+                lane.write(args.vertices.still, vertex, thick(point));
                 if placement.from & KEEPS_END != 0 {
                     let end = end_of(1);
                     lane.write(args.later, vertex, end);
@@ -150,6 +152,7 @@ pub fn place<R: Real, B: Block>(block: &mut B, args: &PlaceArgs<R>) {
                         VertexMotion { t0, t1: end_of(ends - 1) }
                     }
                 };
+                let motion = VertexMotion { t0: thick(motion.t0), t1: thick(motion.t1) };
                 lane.write(args.vertices.moving, vertex, motion);
             }
             i = i.saturating_add(stride);

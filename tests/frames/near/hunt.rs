@@ -15,7 +15,7 @@ use support::judges::near::{Points, asked, fault, reach};
 const PAIRS: usize = 120;
 
 /// Families that ordinary random numbers never see.
-const FAMILIES: [&str; 14] = [
+pub const FAMILIES: [&str; 14] = [
     "random",
     "small integers",
     "nearly parallel",
@@ -45,7 +45,7 @@ fn small(r: &mut SmallRng) -> f64 {
     r.random_range(-1.0..1.0) * 10f64.powi(-r.random_range(1..20))
 }
 
-fn family(r: &mut SmallRng, name: &str, single: bool) -> Points {
+pub fn family(r: &mut SmallRng, name: &str, single: bool) -> Points {
     let any: Points = std::array::from_fn(|_| point(r));
     let [a, b, c, d] = any;
     let e: [f64; 3] = std::array::from_fn(|k| b[k] - a[k]);

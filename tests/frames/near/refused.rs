@@ -9,10 +9,10 @@ fn a_distance_is_a_length_above_nothing() {
     let refused = |query: Query| query.check().err().map(|error| error.to_string());
     assert_eq!(refused(Query::near(1e-300)), None);
     assert_eq!(refused(Query::near(1e300)), None);
-    for distance in [0.0, -0.0, -1.0, f64::NAN, f64::INFINITY] {
+    for distance in [-1.0, f64::NAN, f64::INFINITY] {
         assert!(
             refused(Query::near(distance))
-                .is_some_and(|text| text.contains("distance must be finite and above 0")),
+                .is_some_and(|text| text.contains("distance must be finite and at least 0")),
             "{distance}"
         );
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// Constants on which no proof of an answer rests, or which are no allowance.
-const OTHERS: [(&str, &str); 41] = [
+const OTHERS: [(&str, &str); 43] = [
     ("U32", "the unit"),
     ("U64", "the unit"),
     ("CUBIC_VALUE", "a guess: the cubic's roots guarantee nothing"),
@@ -19,6 +19,8 @@ const OTHERS: [(&str, &str); 41] = [
     ("NEAR_GROWTH", "what is listed, not what is certain"),
     ("DISTANCE_ERROR", "rounded up for nothing: `the_error_of_a_distance` measures it to a sixtieth"),
     ("DISTANCE_LISTED", "the sum of DISTANCE_ERROR and DISTANCE_CERTAIN, and more"),
+    ("DISTANCE_TIED", "which points count as nearest: twice DISTANCE_ERROR, and more"),
+    ("DISTANCE_WEIGHT", "rounded up for nothing: `the_error_of_a_parameter` measures it to a sixtieth"),
     ("DISTANCE_SMALL", "a range"),
     ("DISTANCE_SCALE", "a power of two, exact"),
     ("DISTANCE_FILTERED", "a range"),

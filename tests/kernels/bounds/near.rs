@@ -1,11 +1,12 @@
 //! Distances of features at rest: `prim::near`.
 
 use super::hunt::{Found, Hunt, held};
-use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::math::tolerance::{DISTANCE_CERTAIN, DISTANCE_ERROR, DISTANCE_UP, U64};
-use nearmiss_kernels::prim::near::{edge_edge, vertex_face};
+use nearmiss_kernels::math::{Real, Vec3};
+use nearmiss_kernels::prim::near::{Radii, edge_edge, shortest, vertex_face};
 use nearmiss_lab::case::Features;
-use nearmiss_lab::oracle::near::distance_squared;
+use nearmiss_lab::oracle::near::{Places, distance_squared};
+use num_traits::ToPrimitive;
 use rand::Rng;
 use rand::rngs::SmallRng;
 
@@ -78,4 +79,48 @@ fn distance_up() {
     };
     held("DISTANCE_UP", "f64", &Hunt::new(72).most::<f64>(start, used));
     assert_eq!(DISTANCE_UP, 1.0 + 8.0 * U64);
+}
+
+/// How far a parameter of the nearest points is from the computed one, in parts of the range that is
+/// allowed for it. 0 for a range that is not short: there nearest points are many.
+fn beside(features: Features, x: &[f64]) -> f64 {
+    let at: [[f64; 3]; 4] = std::array::from_fn(|i| std::array::from_fn(|k| x[3 * i + k]));
+    let [a, b, c, d] = at.map(Vec3);
+    // One corner alone has a radius: that of a point is its weight.
+    let (radii, near, of) = match features {
+        Features::VertexFace => {
+            ([0.0, 0.0, 0.0, 1.0], vertex_face(a, [b, c, d], f64::MAX), [b - a, c - b, d - b])
+        }
+        Features::EdgeEdge => {
+            ([0.0, 1.0, 0.0, 0.0], edge_edge([a, b], [c, d], f64::MAX), [a - c, b - a, c - d])
+        }
+    };
+    let reach = of.iter().flat_map(|v| v.0).fold(0.0, |most: f64, x| most.max(x.abs()));
+    let (found, range) = match features {
+        Features::VertexFace => {
+            let range = Radii::new::<true>(radii).of_nearest::<true>(of, reach, shortest::<true>(of));
+            (near.expect("within").at[1], range)
+        }
+        Features::EdgeEdge => {
+            let range = Radii::new::<false>(radii).of_nearest::<false>(of, reach, shortest::<false>(of));
+            (near.expect("within").at[0], range)
+        }
+    };
+    if range.most - range.least > 1e-3 {
+        return 0.0;
+    }
+    let [low, high] = Places::of(features, at, radii).radii().map(|x| x.to_f64().unwrap_or(f64::NAN));
+    ((high - found) / (range.most - found)).greater((found - low) / (found - range.least))
+}
+
+/// How much of the range of nearest points is needed. As of a distance, worst cases do not come
+/// together, and what is rounded up costs nothing.
+#[test]
+fn the_error_of_a_parameter() {
+    for features in KINDS {
+        let hunt = Hunt { starts: 24, ..Hunt::new(73) };
+        let Found { ratio, input } = hunt.most::<f64>(|r| flat(r, features), |x| beside(features, x));
+        println!("DISTANCE_WEIGHT, {features:?}: {ratio:.4} of the range");
+        assert!((1.0 / 60.0..=1.0).contains(&ratio), "{features:?}: {ratio} by {input:?}");
+    }
 }

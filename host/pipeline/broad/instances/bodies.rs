@@ -13,8 +13,8 @@ use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::precision::Precision;
 use crate::query::Query;
 use nearmiss_kernels::abi::{
-    InstancesWithinArgs, NodesWithinArgs, Output, Pair, RelationWords, RelationsArgs, RelationsWithinArgs,
-    Span, TouchingArgs, TouchingFlags, counter,
+    Growth, InstancesWithinArgs, NodesWithinArgs, Output, Pair, RelationWords, RelationsArgs,
+    RelationsWithinArgs, Span, TouchingArgs, TouchingFlags, counter,
 };
 use nearmiss_kernels::entry;
 
@@ -146,8 +146,8 @@ impl<R: Precision> CandidateSearch<R> for PairSearch {
     }
 
     /// Boxes of bodies grow by the margin. Those of fixed bodies are fitted again if it grows.
-    fn set_margin(&mut self, margin: f32) -> bool {
-        self.bodies.groups.set_margin(margin) | self.bodies.is_stale
+    fn set_growth(&mut self, growth: Growth) -> bool {
+        self.bodies.groups.set_margin(growth.margin) | self.bodies.is_stale
     }
 
     fn set(&mut self, query: &Query) {

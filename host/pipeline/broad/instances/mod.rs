@@ -25,7 +25,7 @@ use bytemuck::{Pod, Zeroable};
 use descent::Descent;
 use groups::Groups;
 use nearmiss_kernels::abi::{
-    Counters, InstanceTables, NodePair, Output, Pair, Relation, RelationWords, RelationsArgs, Span,
+    Counters, Growth, InstanceTables, NodePair, Output, Pair, Relation, RelationWords, RelationsArgs, Span,
     TilePairsArgs, TileTrianglesArgs, TraverseFlags, counter,
 };
 use nearmiss_kernels::bv::{Contain, FrameBox};
@@ -238,7 +238,7 @@ impl<R: Precision> CandidateSearch<R> for BodyGroups {
     }
 
     /// Volumes of meshes have no margin. A stale order of bodies is built again.
-    fn set_margin(&mut self, _margin: f32) -> bool {
+    fn set_growth(&mut self, _growth: Growth) -> bool {
         self.is_stale
     }
 

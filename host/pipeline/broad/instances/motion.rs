@@ -12,7 +12,7 @@ use crate::pipeline::layout::Layout;
 use crate::pipeline::list::GrowableOutput;
 use crate::pipeline::precision::Precision;
 use nearmiss_kernels::abi::{
-    InstancesArgs, MovingInstancesArgs, MovingNodesArgs, MovingRelation, MovingRelationsArgs, Output,
+    Growth, InstancesArgs, MovingInstancesArgs, MovingNodesArgs, MovingRelation, MovingRelationsArgs, Output,
 };
 use nearmiss_kernels::entry;
 
@@ -54,9 +54,9 @@ impl<R: Precision> CandidateSearch<R> for MotionSearch {
 
     /// Boxes of bodies and relations grow by the margin. Boxes of fixed bodies are fitted again if it
     /// grows.
-    fn set_margin(&mut self, margin: f32) -> bool {
-        self.margin = margin;
-        self.bodies.groups.set_margin(margin) | self.bodies.is_stale
+    fn set_growth(&mut self, growth: Growth) -> bool {
+        self.margin = growth.margin;
+        self.bodies.groups.set_margin(growth.margin) | self.bodies.is_stale
     }
 
     fn fit(&mut self, given: &BroadContext<R>) -> Result<(), Error> {

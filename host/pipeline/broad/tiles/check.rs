@@ -39,7 +39,11 @@ impl<V: Kernels> Tiles<V> {
         let is_static = |triangle: u32| place(triangle).is_some_and(|(part, _)| part == FIXED);
         let margin = |triangle| {
             let face = faces[triangle as usize];
-            if is_static(triangle) { self.fixed_margin.fitted() } else { self.margin + frames.swell(face) }
+            if is_static(triangle) {
+                frames.grown(face, self.fixed_growth.fitted())
+            } else {
+                frames.grown(face, self.growth) + frames.swell(face)
+            }
         };
         let leaf = |triangle: u32| frames.leaf::<V>(faces[triangle as usize], margin(triangle));
         let mut seen = self.triangles.map(|count| vec![false; count as usize]);

@@ -51,7 +51,7 @@ fn checked_of(bodies: &[Body], fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), E
         is_submitted: false,
         instances: None,
     };
-    let mut tiles = Tiles::<Aabb>::new(&device, &layout, 0.01)?;
+    let mut tiles = Tiles::<Aabb>::new(&device, &layout, abi::Growth::margin(0.01))?;
     tiles.construct(&given, &layout)?;
     CandidateSearch::fit(&mut tiles, &given)?;
     CandidateSearch::refit(&mut tiles, &given)?;

@@ -4,7 +4,7 @@
 mod check;
 #[cfg(test)]
 mod faults;
-mod fixed_margin;
+mod fixed_growth;
 mod rims;
 
 use super::sorted::{Sorted, SortedFor};
@@ -17,9 +17,9 @@ use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::{launch, purpose};
-use fixed_margin::FixedMargin;
+use fixed_growth::FixedGrowth;
 use nearmiss_kernels::abi::{
-    FilterArgs, FitTilesArgs, NONE, Node, NodeFilter, Pair, RefitTilesArgs, Span, TileFiltersArgs,
+    FilterArgs, FitTilesArgs, Growth, NONE, Node, NodeFilter, Pair, RefitTilesArgs, Span, TileFiltersArgs,
     TilePairsArgs, TileTrianglesArgs, TreeBody, counter,
 };
 use nearmiss_kernels::bvh::tiles::{self, Levels, Part, TILE};
@@ -55,7 +55,7 @@ pub struct Tiles<V> {
     sorted: Sorted,
     /// Fixed triangles in order, once their tiles exist.
     fixed: Option<StaticOrder>,
-    fixed_margin: FixedMargin,
+    fixed_growth: FixedGrowth,
     leaves: Buffer<Node<V>>,
     nodes: Buffer<Node<V>>,
     /// Filters of the triangles below each node; empty if no filter applies.
@@ -71,16 +71,16 @@ pub struct Tiles<V> {
     work: Option<Buffer<u64>>,
     /// End of the last share's tiles, and how many pairs of tiles it listed.
     listed: (u32, u64),
-    margin: f32,
+    growth: Growth,
 }
 
 impl<V: Kernels> Tiles<V> {
     /// Allocates tiles over the bodies of a layout. At least one body moves. Volumes hold
-    /// everything within `margin` of the triangles.
+    /// everything within `growth` of the triangles.
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(device: &Device, layout: &Layout, margin: f32) -> Result<Self, Error> {
+    pub fn new(device: &Device, layout: &Layout, growth: Growth) -> Result<Self, Error> {
         let triangles =
             layout.trees.each_ref().map(|bodies| bodies.iter().map(|&body| layout.triangles(body).1).sum());
         let levels = Levels::of(triangles);
@@ -102,7 +102,7 @@ impl<V: Kernels> Tiles<V> {
             sorted: Sorted::new(device, layout, &layout.trees[MOVING], SortedFor::Tiles)?,
             listed: (0, 0),
             fixed: None,
-            fixed_margin: FixedMargin::default(),
+            fixed_growth: FixedGrowth::default(),
             leaves,
             nodes: volumes.upload(&vec![nothing; count])?,
             filters: of_nodes,
@@ -113,7 +113,7 @@ impl<V: Kernels> Tiles<V> {
             work: None,
             levels,
             triangles,
-            margin,
+            growth,
         })
     }
 
@@ -151,7 +151,7 @@ impl<V: Kernels> Tiles<V> {
         given: &BroadContext<R>,
         part: usize,
         triangles: Span<u64>,
-        margin: f32,
+        growth: Growth,
     ) -> Result<(), Error> {
         let above = self.levels.part(1, part, self.triangles[part]);
         let args = FitTilesArgs {
@@ -162,21 +162,20 @@ impl<V: Kernels> Tiles<V> {
             nodes: self.nodes.span(),
             tile: self.levels.part(0, part, self.triangles[part]).first,
             above: above.first,
-            margin,
-            pad: 0,
+            growth,
         };
         launch::blocks::<entry::fit_tiles<R, V>>(given.device, above.count, &args)
     }
 
-    /// Fits fixed tiles, unless they are already fitted with a suitable margin.
+    /// Fits fixed tiles, unless they are already fitted with a suitable growth.
     fn fit_static<R: Precision>(&mut self, given: &BroadContext<R>) -> Result<(), Error> {
         let fixed = self.fixed.as_ref().map(|fixed| fixed.triangles.span());
-        let Some(triangles) = fixed.filter(|_| self.fixed_margin.take(self.margin, !given.is_submitted))
+        let Some(triangles) = fixed.filter(|_| self.fixed_growth.take(self.growth, !given.is_submitted))
         else {
             return Ok(());
         };
         let given = &given.of_fixed();
-        Tiles::fit(self, given, FIXED, triangles, self.fixed_margin.fitted())?;
+        Tiles::fit(self, given, FIXED, triangles, self.fixed_growth.fitted())?;
         Tiles::refit(self, given.device, FIXED)
     }
 
@@ -258,8 +257,8 @@ impl<R: Precision, V: Kernels> CandidateSearch<R> for Tiles<V> {
         Ok(())
     }
 
-    fn set_margin(&mut self, margin: f32) -> bool {
-        self.margin = margin;
+    fn set_growth(&mut self, growth: Growth) -> bool {
+        self.growth = growth;
         false
     }
 
@@ -269,7 +268,7 @@ impl<R: Precision, V: Kernels> CandidateSearch<R> for Tiles<V> {
 
     fn fit(&mut self, given: &BroadContext<R>) -> Result<(), Error> {
         self.fit_static(given)?;
-        Tiles::fit(self, given, MOVING, self.sorted.triangles(), self.margin)?;
+        Tiles::fit(self, given, MOVING, self.sorted.triangles(), self.growth)?;
         self.fit_rims(given)
     }
 

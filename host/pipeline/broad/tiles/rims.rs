@@ -30,8 +30,7 @@ impl<V: Kernels> Tiles<V> {
                 count: own.count,
                 below: below.first,
                 below_count: below.count,
-                margin: self.margin,
-                pad: 0,
+                growth: self.growth,
             };
             launch::each::<entry::fit_rims<R, V>>(given.device, own.count as usize, &args)?;
         }

@@ -15,7 +15,7 @@ use crate::pipeline::precision::Precision;
 use crate::pipeline::{launch, purpose};
 use crate::query::Refit;
 use nearmiss_kernels::abi::{
-    FilterArgs, GraftArgs, Link, Node, NodeFilter, ROOT, TraverseFlags, TreeBody, grafted,
+    FilterArgs, GraftArgs, Growth, Link, Node, NodeFilter, ROOT, TraverseFlags, TreeBody, grafted,
 };
 use nearmiss_kernels::bvh;
 use nearmiss_kernels::entry::{self, Kernels};
@@ -36,8 +36,8 @@ struct Fixed {
     /// Start of each level; empty before the tree is built.
     starts: Vec<u32>,
     refit: Refit,
-    /// Its volumes hold everything within this distance of its triangles.
-    margin: f32,
+    /// Growth of its volumes.
+    growth: Growth,
 }
 
 impl<V: Kernels> Forest<V> {
@@ -45,19 +45,19 @@ impl<V: Kernels> Forest<V> {
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(device: &Device, layout: &Layout, refit: Refit, margin: f32) -> Result<Forest<V>, Error> {
+    pub fn new(device: &Device, layout: &Layout, refit: Refit, growth: Growth) -> Result<Forest<V>, Error> {
         let [moving, fixed] = &layout.trees;
         let leaves: u32 = fixed.iter().map(|&body| layout.triangles(body).1).sum();
         let room = if leaves > 0 { Room::Beside(leaves) } else { Room::Alone };
         let groups = V::GROUP > 0;
         let tree = Tree::new(device, &TreeSpec { layout, bodies: moving, room, refit, groups })?;
-        let volumes = Volumes::new(&device.of(purpose::VOLUMES), &tree, margin)?;
+        let volumes = Volumes::new(&device.of(purpose::VOLUMES), &tree, growth)?;
         let fixed = (leaves > 0).then(|| Fixed {
             bodies: fixed.clone(),
             layout: (Vec::new(), leaves),
             starts: Vec::new(),
             refit,
-            margin,
+            growth,
         });
         Ok(Forest { tree, volumes, fixed })
     }
@@ -77,7 +77,7 @@ impl<V: Kernels> Forest<V> {
                 let mut tree = Tree::new(device, &plan)?;
                 tree.construct::<R>(device, frames, (faces, records))?;
                 tree.learn_levels()?;
-                let volumes = Volumes::<V>::new(device, &tree, fixed.margin)?;
+                let volumes = Volumes::<V>::new(device, &tree, fixed.growth)?;
                 let frames = given.of_fixed().frames;
                 volumes.fit(device, &tree, frames, faces)?;
                 volumes.refit(device, &tree, frames, faces)?;
@@ -99,12 +99,14 @@ impl<V: Kernels> Forest<V> {
         }
     }
 
-    /// Sets the margin of volumes from the next fit on. Returns whether the fixed tree must be
+    /// Sets the growth of volumes from the next fit on. Returns whether the fixed tree must be
     /// built again for it.
-    pub fn set_margin(&mut self, margin: f32) -> bool {
-        self.volumes.margin = margin;
-        let Some(fixed) = self.fixed.as_mut().filter(|fixed| margin > fixed.margin) else { return false };
-        fixed.margin = margin;
+    pub fn set_growth(&mut self, growth: Growth) -> bool {
+        self.volumes.growth = growth;
+        let Some(fixed) = self.fixed.as_mut().filter(|fixed| !fixed.growth.serves(growth)) else {
+            return false;
+        };
+        fixed.growth = fixed.growth.or(growth);
         fixed.starts.clear();
         true
     }
@@ -174,7 +176,7 @@ impl<V: Kernels> Forest<V> {
         check_filters(&links, &filters, ROOT)?;
         // Fixed volumes were fitted once, without turns.
         let swell = |_| 0.0;
-        self.volumes.check_nodes((&links, &nodes, &leaf_nodes), (ROOT, fixed.margin, &swell), faces, frames)
+        self.volumes.check_nodes((&links, &nodes, &leaf_nodes), (ROOT, fixed.growth, &swell), faces, frames)
     }
 
     /// Returns the nodes of the fixed tree as they were before they were grafted, and the parents

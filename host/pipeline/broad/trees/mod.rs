@@ -20,7 +20,7 @@ use crate::pipeline::precision::Precision;
 use crate::pipeline::purpose;
 use crate::query::Query;
 use forest::Forest;
-use nearmiss_kernels::abi::Output;
+use nearmiss_kernels::abi::{Growth, Output};
 use nearmiss_kernels::entry::Kernels;
 use walk::{Walk, WalkContext, walk};
 use xxhash_rust::xxh3::xxh3_64;
@@ -36,10 +36,10 @@ impl<R: Precision, V: Kernels> Trees<R, V> {
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(device: &Device, layout: &Layout, query: &Query, margin: f32) -> Result<Self, Error> {
+    pub fn new(device: &Device, layout: &Layout, query: &Query, growth: Growth) -> Result<Self, Error> {
         let refit = query.refit_on(device.is_gpu());
         Ok(Trees {
-            forest: Forest::new(&device.of(purpose::TREE), layout, refit, margin)?,
+            forest: Forest::new(&device.of(purpose::TREE), layout, refit, growth)?,
             walk: walk(&device.of(purpose::WALK), query, layout.moving_triangles())?,
         })
     }
@@ -51,8 +51,8 @@ impl<R: Precision, V: Kernels> CandidateSearch<R> for Trees<R, V> {
         self.forest.construct(given, layout)
     }
 
-    fn set_margin(&mut self, margin: f32) -> bool {
-        self.forest.set_margin(margin)
+    fn set_growth(&mut self, growth: Growth) -> bool {
+        self.forest.set_growth(growth)
     }
 
     fn learn(&mut self) -> Result<(), Error> {

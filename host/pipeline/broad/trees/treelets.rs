@@ -137,7 +137,7 @@ mod tests {
     use crate::pipeline::Layout;
     use crate::pipeline::broad::trees::{Tree, TreeSpec, Volumes};
     use crate::samples::soup;
-    use nearmiss_kernels::abi::{Point, Positions};
+    use nearmiss_kernels::abi::{Growth, Point, Positions};
     use nearmiss_kernels::bv::{Aabb, Obb};
     use nearmiss_kernels::entry::Kernels;
     use nearmiss_kernels::math::Vec3;
@@ -159,7 +159,7 @@ mod tests {
         let mut tree = Tree::new(&device, &TreeSpec::alone(&layout, refit, V::GROUP > 0))?;
         tree.construct::<f32>(&device, frames, (faces.span(), Span::EMPTY))?;
         tree.learn_levels()?;
-        let volumes = Volumes::<V>::new(&device, &tree, 0.0)?;
+        let volumes = Volumes::<V>::new(&device, &tree, Growth::default())?;
         let refit = |tree: &Tree| {
             volumes.fit(&device, tree, frames, faces.span())?;
             volumes.refit(&device, tree, frames, faces.span())

@@ -7,7 +7,9 @@ use crate::error::Error;
 use crate::pipeline::broad::{Checked, broken};
 use crate::pipeline::launch;
 use crate::pipeline::precision::Precision;
-use nearmiss_kernels::abi::{FitArgs, GroupsArgs, Link, Node, Positions, RefitArgs, Span, TreeletsArgs};
+use nearmiss_kernels::abi::{
+    FitArgs, GroupsArgs, Growth, Link, Node, Positions, RefitArgs, Span, TreeletsArgs,
+};
 use nearmiss_kernels::bvh;
 use nearmiss_kernels::entry::{self, Entry, Kernels};
 
@@ -15,18 +17,18 @@ use nearmiss_kernels::entry::{self, Entry, Kernels};
 pub struct Volumes<V> {
     /// The nodes, in the tree's order.
     pub nodes: Buffer<Node<V>>,
-    /// Growth of the volumes: half the separation, rounded up.
-    pub margin: f32,
+    /// Growth of the volumes.
+    pub growth: Growth,
 }
 
 impl<V: Kernels> Volumes<V> {
-    /// Allocates the volumes of a tree. They hold everything within `margin` of the triangles.
+    /// Allocates the volumes of a tree. They hold everything within `growth` of the triangles.
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(device: &Device, tree: &Tree, margin: f32) -> Result<Self, Error> {
+    pub fn new(device: &Device, tree: &Tree, growth: Growth) -> Result<Self, Error> {
         let leaves = tree.leaves() + tree.room().others() as usize;
-        Ok(Volumes { nodes: device.buffer(2 * leaves)?, margin })
+        Ok(Volumes { nodes: device.buffer(2 * leaves)?, growth })
     }
 
     /// Fits the volumes of the leaves, unless treelets do that in [`Volumes::refit`]. Also fits the
@@ -48,8 +50,7 @@ impl<V: Kernels> Volumes<V> {
                 leaf_nodes: tree.leaf_nodes.span(),
                 links: tree.links.span(),
                 nodes: self.nodes.span(),
-                margin: self.margin,
-                pad: 0,
+                growth: self.growth,
             };
             launch::each::<entry::fit<R, V>>(device, tree.leaves(), &args)?;
         }
@@ -64,8 +65,9 @@ impl<V: Kernels> Volumes<V> {
             pair_parents: tree.pair_parents.span(),
             firsts: tree.firsts.span(),
             nodes: self.nodes.span(),
+            growth: self.growth,
             root: tree.root(),
-            margin: self.margin,
+            pad: 0,
         };
         // One pair of siblings per inner node, behind the root.
         let inner = tree.firsts.len() - tree.root().div_ceil(2) as usize;
@@ -107,8 +109,7 @@ impl<V: Kernels> Volumes<V> {
             top_starts: plan.top_starts.span(),
             ticket: plan.ticket.span(),
             nodes: self.nodes.span(),
-            margin: self.margin,
-            pad: 0,
+            growth: self.growth,
         };
         launch::blocks::<entry::refit_treelets<R, V>>(device, plan.blocks(), &args)
     }
@@ -175,7 +176,7 @@ impl<V: Kernels> Volumes<V> {
         let swell = |face| frames.swell(face);
         self.check_nodes(
             (&tree.download()?, nodes, &leaves),
-            (tree.root(), self.margin, &swell),
+            (tree.root(), self.growth, &swell),
             faces,
             frames,
         )
@@ -189,23 +190,30 @@ impl<V: Kernels> Volumes<V> {
     pub fn check_nodes<R: Precision>(
         &self,
         (links, nodes, leaves): (&[Link], &[Node<V>], &[u32]),
-        (root, margin, swell): (u32, f32, &dyn Fn([u32; 3]) -> f32),
+        (root, growth, swell): (u32, Growth, &dyn Fn([u32; 3]) -> f32),
         faces: &[[u32; 3]],
         frames: &Checked<R>,
     ) -> Result<(), Error> {
-        let swell = |triangle: u32| swell(faces[triangle as usize]);
-        let leaf = |triangle: u32| frames.leaf::<V>(faces[triangle as usize], margin + swell(triangle));
+        let grown = |triangle: u32| {
+            let face = faces[triangle as usize];
+            (frames.grown(face, growth), swell(face))
+        };
+        let leaf = |triangle: u32| {
+            let (margin, swell) = grown(triangle);
+            frames.leaf::<V>(faces[triangle as usize], margin + swell)
+        };
         let fitted = |first: u32, last: u32| {
             if last - first >= V::GROUP {
                 return None;
             }
             let triangles =
                 leaves[first as usize..=last as usize].iter().map(|&at| links[at as usize].triangle());
-            let most = triangles.clone().map(swell).fold(0.0, f32::max);
+            let most = |[x, y]: [f32; 2], (own_x, own_y): (f32, f32)| [x.max(own_x), y.max(own_y)];
+            let [margin, swell] = triangles.clone().map(grown).fold([growth.margin, 0.0], most);
             let vertices = triangles.flat_map(|t| faces[t as usize]);
             let points = vertices.flat_map(|v| frames.iter().map(move |frame| frame[v as usize]));
             let volume = V::of_points(&*points.collect::<Vec<_>>());
-            Some(volume.near(margin + most))
+            Some(volume.near(margin + swell))
         };
         bvh::check_volumes(links, nodes, root, leaf, fitted).map_err(broken)
     }

@@ -18,6 +18,7 @@
 //! | [`separation`] | rungs of a minimum separation |
 //! | [`advance`], [`hull`], [`nearest`] | supporting planes, for a separation |
 //! | [`turning`], [`normal`] | planes that turn with the features |
+//! | [`thick`] | features whose radii differ |
 //!
 //! The answers and their proofs are those of [`crate::prim::inclusion`]. No pair that meets is
 //! separated, and no time is late. A contact is one. An undecided pair comes within the tolerance.
@@ -39,6 +40,7 @@ pub mod normal;
 pub mod pair;
 pub mod separation;
 pub mod suspect;
+pub mod thick;
 pub mod turning;
 
 pub use certified::{Rungs, ee_certified, vf_certified};

@@ -120,8 +120,9 @@ pub fn in_single<const N: usize>(pair: &Pair<f32, N>, p: &Params) -> Result<Verd
 pub struct Double {
     advance: Advance<f64, 4>,
     nearness: bool,
-    /// The tolerance of the pair's two bodies, a length.
+    /// The tolerance and the separation of the pair's two bodies, lengths.
     tolerance: f64,
+    min_separation: f64,
 }
 
 impl Double {
@@ -131,14 +132,14 @@ impl Double {
         // A number that is no time of the step proves nothing.
         let from = if from >= 0.0 && from <= pair.end { from } else { 0.0 };
         let advance = Advance::new(pair, (from, pair.end), separation(&pair, p), ADVANCES);
-        Double { advance, nearness: false, tolerance: p.tolerance }
+        Double { advance, nearness: false, tolerance: p.tolerance, min_separation: p.min_separation }
     }
     /// Whether it is a vertex and a face.
     #[inline(always)]
     pub fn is_face(&self) -> bool {
         self.advance.pair().is_face
     }
-    /// A step, whatever the tolerance of `p`: a pair keeps that which it began with. Once it was
+    /// A step, whatever the lengths of `p`: a pair keeps those which it began with. Once it was
     /// the last, the verdict. `normal` is the pair's.
     #[inline(always)]
     pub fn step(&mut self, p: &Params, normal: impl Fn() -> Normal<f64>) -> Option<Verdict> {
@@ -156,7 +157,7 @@ impl Double {
             },
             Advanced::Open { from } => from,
         };
-        let p = Params { tolerance: self.tolerance, ..*p };
+        let p = Params { tolerance: self.tolerance, min_separation: self.min_separation, ..*p };
         let pair = *self.advance.pair();
         self.advance = nearness(&pair, (from, pair.end), 1.0, &p);
         self.nearness = true;

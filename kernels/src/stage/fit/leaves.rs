@@ -6,7 +6,7 @@
 //! Reads    positions at t = 0 (and t = 1), faces, the leaf's node.
 //! Writes   the nodes of the leaves, each once.
 //! Before   the tree is constructed; positions are finite.
-//! After    volume(leaf) ⊇ {p : distance(p, triangle(t)) ≤ margin}, for every t in [0, 1] with two
+//! After    volume(leaf) ⊇ {p : distance(p, triangle(t)) ≤ growth}, for every t in [0, 1] with two
 //!          frames, else at t = 0. Rounded outward.
 //! Room     fixed; cannot run out.
 //! Departs  the paper merges all inner nodes. Boxes of boxes are twice as loose as boxes of points.
@@ -29,7 +29,7 @@ pub fn fit<R: Real, V: Volume, B: Block>(block: &mut B, args: &FitArgs<R, V>) {
         while (i as u64) < args.leaf_nodes.len() {
             let at = lane.read(args.leaf_nodes, i);
             let link = lane.read(args.links, at);
-            let volume: V = leaf::volume(lane, &args.frames, args.faces, link.triangle(), args.margin);
+            let volume: V = leaf::volume(lane, &args.frames, args.faces, link.triangle(), args.growth);
             lane.write(args.nodes, at, link.with(volume));
             i += stride;
         }
@@ -55,12 +55,8 @@ pub fn groups<R: Real, V: Volume, B: Block>(block: &mut B, args: &GroupsArgs<R, 
                     leaves: [first, last],
                 };
                 let link = Link { link: 2 * pair, last };
-                let volume = V::of_points(&points);
-                lane.write(
-                    args.nodes,
-                    lane.read(args.pair_parents, pair),
-                    link.with(volume.near(args.margin + points.swell())),
-                );
+                let volume = V::of_points(&points).near(points.growth(args.growth) + points.swell());
+                lane.write(args.nodes, lane.read(args.pair_parents, pair), link.with(volume));
             }
             pair += stride;
         }

@@ -66,7 +66,7 @@ fn of_triangle<R: Real, V: Volume, L: Lane>(lane: &L, args: &RimsArgs<R, V>, pla
         return Node { volume: V::zeroed(), link: 0, last: 0 };
     }
     let rim = opposite(lane.read(args.faces, triangle), hub - 1);
-    Node { volume: leaf::of_corners(lane, &args.frames, rim, args.margin), link: hub, last: 0 }
+    Node { volume: leaf::of_corners(lane, &args.frames, rim, args.growth), link: hub, last: 0 }
 }
 
 /// The corners of a face other than its hub, one of them twice. A face that repeats one vertex

@@ -38,7 +38,7 @@ pub fn tiles<R: Real, V: Volume, B: Block>(block: &mut B, args: &FitTilesArgs<R,
         tile: args.tile,
         above: args.above,
     };
-    fit(block, &to, |lane, triangle| leaf::volume(lane, &args.frames, args.faces, triangle, args.margin));
+    fit(block, &to, |lane, triangle| leaf::volume(lane, &args.frames, args.faces, triangle, args.growth));
 }
 
 /// Items in order, and their nodes.

@@ -126,8 +126,9 @@ impl<R: Real, C: Course<R>> RowMap for Parted<R, C> {
     #[inline(always)]
     fn at_once(&self, row: Self::Row) -> u32 {
         let [a, b, c, d, e, f, common] = row;
+        let gap = C::gap(&[a, b, c], &[d, e, f], self.gap);
         let (p, q) = ([C::ends(a), C::ends(b), C::ends(c)], [C::ends(d), C::ends(e), C::ends(f)]);
-        if parted(&p, &q, self.gap, C::ends(common).t0[0] > R::ZERO) { APART } else { LEFT }
+        if parted(&p, &q, gap, C::ends(common).t0[0] > R::ZERO) { APART } else { LEFT }
     }
 }
 

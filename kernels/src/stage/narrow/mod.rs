@@ -93,53 +93,59 @@ fn edge_edge<R: Real, L: Lane>(
     [edge(lane, frames, lane.read(edges, pair.a)), edge(lane, frames, lane.read(edges, pair.b))]
 }
 
-/// Parameters of a vertex and a face, with the tolerance of their two bodies.
+/// Parameters of a vertex and a face, with those of their two bodies.
 #[inline(always)]
 fn of_vertex_face<R: Real, L: Lane>(lane: &L, args: &RungArgs<R>, pair: Pair) -> Params {
-    with_tolerance(lane, args, || [pair.a, lane.read(args.faces, pair.b)[0]])
+    of_bodies(lane, args, || [pair.a, lane.read(args.faces, pair.b)[0]])
 }
 
-/// Parameters of two edges, with the tolerance of their two bodies.
+/// Parameters of two edges, with those of their two bodies.
 #[inline(always)]
 fn of_edge_edge<R: Real, L: Lane>(lane: &L, args: &RungArgs<R>, pair: Pair) -> Params {
-    with_tolerance(lane, args, || [pair.a, pair.b].map(|edge| lane.read(args.edges, edge)[0]))
+    of_bodies(lane, args, || [pair.a, pair.b].map(|edge| lane.read(args.edges, edge)[0]))
 }
 
-/// The parameters, with the tolerance of the bodies of two vertices if bodies differ. Field by
-/// field: an early return of the whole would be a copy in local memory.
+/// The parameters, with the tolerance and the radii of the bodies of two vertices if bodies differ.
+/// Field by field: an early return of the whole would be a copy in local memory.
 #[inline(always)]
-fn with_tolerance<R: Real, L: Lane>(
-    lane: &L,
-    args: &RungArgs<R>,
-    vertices: impl FnOnce() -> [u32; 2],
-) -> Params {
-    let tolerance = if args.tolerances.is_empty() {
-        args.params.tolerance
+fn of_bodies<R: Real, L: Lane>(lane: &L, args: &RungArgs<R>, vertices: impl FnOnce() -> [u32; 2]) -> Params {
+    let Params { tolerance, min_separation, .. } = args.params;
+    let (tolerance, min_separation) = if args.tolerances.is_empty() {
+        (tolerance, min_separation)
     } else {
-        tolerance_of(lane, args.tolerances, vertices())
+        let [a, b] = vertices().map(|vertex| body_of(lane, args.tolerances, vertex));
+        (smaller(a, b), min_separation + (a.radius + b.radius))
     };
-    Params { tolerance, ..args.params }
+    Params { tolerance, min_separation, ..args.params }
 }
 
 /// Tolerance of a pair of features, from a vertex of each: the smaller of their bodies' tolerances,
 /// 0 if neither has one. Cost: log2 of the bodies steps for each.
 #[inline(always)]
-fn tolerance_of<L: Lane>(lane: &L, tolerances: Span<BodyTolerance>, [p, q]: [u32; 2]) -> f64 {
-    let of_body = |vertex: u32| {
-        // The body of a vertex is the last that begins there or before.
-        let (mut first, mut behind) = (0, tolerances.len() as u32);
-        while behind - first > 1 {
-            let middle = first + (behind - first) / 2;
-            if lane.read(tolerances, middle).vertex <= vertex {
-                first = middle;
-            } else {
-                behind = middle;
-            }
+fn tolerance_of<L: Lane>(lane: &L, tolerances: Span<BodyTolerance>, vertices: [u32; 2]) -> f64 {
+    let [a, b] = vertices.map(|vertex| body_of(lane, tolerances, vertex));
+    smaller(a, b)
+}
+
+/// The body of a vertex: the last that begins there or before.
+#[inline(always)]
+fn body_of<L: Lane>(lane: &L, tolerances: Span<BodyTolerance>, vertex: u32) -> BodyTolerance {
+    let (mut first, mut behind) = (0, tolerances.len() as u32);
+    while behind - first > 1 {
+        let middle = first + (behind - first) / 2;
+        if lane.read(tolerances, middle).vertex <= vertex {
+            first = middle;
+        } else {
+            behind = middle;
         }
-        lane.read(tolerances, first).tolerance
-    };
-    let (p, q) = (of_body(p), of_body(q));
-    let smaller = if q < p { q } else { p };
+    }
+    lane.read(tolerances, first)
+}
+
+/// The smaller tolerance of two bodies; 0 if neither has one.
+#[inline(always)]
+fn smaller(a: BodyTolerance, b: BodyTolerance) -> f64 {
+    let smaller = if b.tolerance < a.tolerance { b.tolerance } else { a.tolerance };
     if smaller < f64::INFINITY { smaller } else { 0.0 }
 }
 

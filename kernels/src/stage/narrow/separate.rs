@@ -6,7 +6,7 @@
 //!          A finished lane draws the next pair of its block, so few lanes idle.
 //!          A block's pairs are a grid apart. The kinds begin at opposite ends of the grid.
 //! Reads    pairs, those of `abreast` with a time; faces or edges, positions of both frames (four
-//!          vertices); tolerances of bodies, if they differ.
+//!          vertices); tolerances of bodies, if they differ; radii, with a thickness.
 //! Writes   contacts and undecided pairs with bounds of toi; or the earliest.
 //! Before   pairs are complete. Before its time a pair is certainly farther apart.
 //! After    {pairs that come within the separation} ⊆ listed; no time is late. See
@@ -18,11 +18,13 @@
 
 use super::climb::emit;
 use super::{edge_edge, of_edge_edge, of_vertex_face, vertex_face};
-use crate::abi::{Listed, Pair, RungArgs};
+use crate::abi::{Listed, Pair, RungArgs, ThickRungArgs};
 use crate::exec::{Block, Lane};
 use crate::math::Real;
+use crate::prim::inclusion::{Params, Verdict};
 use crate::prim::isolate::normal::{NUMBERS, Normal};
 use crate::prim::isolate::separation::Double;
+use crate::prim::isolate::thick::Uneven;
 use crate::prim::isolate::{Edges, Face};
 
 /// Bytes of shared memory of a block: a normal a lane, and the numbers of pairs drawn.
@@ -47,9 +49,164 @@ fn nth<L: Lane>(lane: &L, of: &Listed, is_begun: bool, i: u32) -> (Pair, f64) {
     }
 }
 
-/// All pairs of both lists.
+/// A pair under way.
+pub trait UnderWay<R: Real, L: Lane>: Copy {
+    /// The arguments of its kernel.
+    type Args;
+    /// Those of every rung.
+    fn rung(args: &Self::Args) -> &RungArgs<R>;
+    /// A vertex and a face, from a time before which they are certainly farther apart. Its normal is
+    /// kept by `put`.
+    fn of_face(lane: &L, args: &Self::Args, from: (Pair, f64), put: impl FnOnce(Normal<f64>)) -> Self;
+    /// Two edges.
+    fn of_edges(lane: &L, args: &Self::Args, from: (Pair, f64), put: impl FnOnce(Normal<f64>)) -> Self;
+    /// Whether it is a vertex and a face.
+    fn is_face(&self) -> bool;
+    /// A step; once it was the last, the verdict.
+    fn step(&mut self, p: &Params, normal: impl Fn() -> Normal<f64>) -> Option<Verdict>;
+}
+
+impl<R: Real, L: Lane> UnderWay<R, L> for Double {
+    type Args = RungArgs<R>;
+    #[inline(always)]
+    fn rung(args: &RungArgs<R>) -> &RungArgs<R> {
+        args
+    }
+    #[inline(always)]
+    fn of_face(
+        lane: &L,
+        args: &RungArgs<R>,
+        (pair, from): (Pair, f64),
+        put: impl FnOnce(Normal<f64>),
+    ) -> Self {
+        let p = of_vertex_face(lane, args, pair);
+        let (v, f) = vertex_face(lane, &args.frames, args.faces, pair);
+        let face = Face::new(v, f, &p);
+        put(face.normal());
+        Double::begin(face.of_four(), from, &p)
+    }
+    #[inline(always)]
+    fn of_edges(
+        lane: &L,
+        args: &RungArgs<R>,
+        (pair, from): (Pair, f64),
+        put: impl FnOnce(Normal<f64>),
+    ) -> Self {
+        let p = of_edge_edge(lane, args, pair);
+        let [x, y] = edge_edge(lane, &args.frames, args.edges, pair);
+        let edges = Edges::new(x, y, &p);
+        put(edges.normal());
+        Double::begin(edges, from, &p)
+    }
+    #[inline(always)]
+    fn is_face(&self) -> bool {
+        Double::is_face(self)
+    }
+    #[inline(always)]
+    fn step(&mut self, p: &Params, normal: impl Fn() -> Normal<f64>) -> Option<Verdict> {
+        Double::step(self, p, normal)
+    }
+}
+
+/// A pair of vertices with a thickness: of one radius a feature, or of several.
+#[derive(Clone, Copy)]
+enum Thick {
+    Even(Double),
+    Uneven(Uneven),
+}
+
+impl<R: Real, L: Lane> UnderWay<R, L> for Thick {
+    type Args = ThickRungArgs<R>;
+    #[inline(always)]
+    fn rung(args: &ThickRungArgs<R>) -> &RungArgs<R> {
+        &args.rung
+    }
+    #[inline(always)]
+    fn of_face(
+        lane: &L,
+        args: &ThickRungArgs<R>,
+        (pair, from): (Pair, f64),
+        put: impl FnOnce(Normal<f64>),
+    ) -> Self {
+        let radius = |vertex| lane.read(args.radii, vertex);
+        let (own, [x, y, z]) = (radius(pair.a), lane.read(args.rung.faces, pair.b).map(radius));
+        let radii = [own + x, own + y, own + z, own + z];
+        let p = of_radii(of_vertex_face(lane, &args.rung, pair), &args.rung.params, radii);
+        let (v, f) = vertex_face(lane, &args.rung.frames, args.rung.faces, pair);
+        let face = Face::new(v, f, &p);
+        put(face.normal());
+        Thick::begin(face.of_four(), radii, from, &p)
+    }
+    #[inline(always)]
+    fn of_edges(
+        lane: &L,
+        args: &ThickRungArgs<R>,
+        (pair, from): (Pair, f64),
+        put: impl FnOnce(Normal<f64>),
+    ) -> Self {
+        let radius = |vertex| lane.read(args.radii, vertex);
+        let ends = |edge| lane.read(args.rung.edges, edge).map(radius);
+        let ([a, b], [c, d]) = (ends(pair.a), ends(pair.b));
+        let radii = [a + c, a + d, b + c, b + d];
+        let p = of_radii(of_edge_edge(lane, &args.rung, pair), &args.rung.params, radii);
+        let [x, y] = edge_edge(lane, &args.rung.frames, args.rung.edges, pair);
+        let edges = Edges::new(x, y, &p);
+        put(edges.normal());
+        Thick::begin(edges, radii, from, &p)
+    }
+    #[inline(always)]
+    fn is_face(&self) -> bool {
+        match self {
+            Thick::Even(double) => double.is_face(),
+            Thick::Uneven(uneven) => uneven.is_face(),
+        }
+    }
+    #[inline(always)]
+    fn step(&mut self, p: &Params, normal: impl Fn() -> Normal<f64>) -> Option<Verdict> {
+        match self {
+            Thick::Even(double) => double.step(p, normal),
+            Thick::Uneven(uneven) => uneven.step(p),
+        }
+    }
+}
+
+/// Whether all control vectors have one radius.
 #[inline(always)]
+fn is_even([a, b, c, d]: [f64; 4]) -> bool {
+    (a == b) & (b == c) & (c == d)
+}
+
+/// Parameters of a pair whose separation is that of the query, and the radius if there is one.
+#[inline(always)]
+fn of_radii(of_bodies: Params, query: &Params, radii: [f64; 4]) -> Params {
+    let radius = if is_even(radii) { radii[0] } else { 0.0 };
+    Params { min_separation: query.min_separation + radius, ..of_bodies }
+}
+
+impl Thick {
+    #[inline(always)]
+    fn begin(pair: Edges<f64>, radii: [f64; 4], from: f64, p: &Params) -> Self {
+        if is_even(radii) {
+            Thick::Even(Double::begin(pair, from, p))
+        } else {
+            Thick::Uneven(Uneven::begin(&pair, radii, p))
+        }
+    }
+}
+
+/// All pairs of both lists.
 pub fn separate<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
+    each::<R, B, Double>(block, args);
+}
+
+/// All pairs of both lists, of vertices with a thickness.
+pub fn thick<R: Real, B: Block>(block: &mut B, args: &ThickRungArgs<R>) {
+    each::<R, B, Thick>(block, args);
+}
+
+#[inline(always)]
+fn each<R: Real, B: Block, U: UnderWay<R, B::Lane>>(block: &mut B, of_kernel: &U::Args) {
+    let args = U::rung(of_kernel);
     let (first, blocks) = (block.block(), block.blocks());
     // Whether f32 has left the pairs.
     let is_begun = !args.vf.begun.count().is_empty();
@@ -77,7 +234,7 @@ pub fn separate<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
             }
             Normal::of_numbers(numbers)
         };
-        let mut under_way: Option<(Pair, Double)> = None;
+        let mut under_way: Option<(Pair, U)> = None;
         // A quarter of the lanes begins with vertices and faces, so that few warps have both kinds.
         let (mut is_face, mut kinds) = (lane.lane() < lanes / 4, 2);
         while lane.any(kinds > 0 || under_way.is_some()) {
@@ -91,19 +248,11 @@ pub fn separate<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
                 if i >= count as u64 {
                     (is_face, kinds) = (!is_face, kinds - 1);
                 } else if is_face {
-                    let (pair, from) = nth(lane, &args.vf, is_begun, i as u32);
-                    let p = of_vertex_face(lane, args, pair);
-                    let (v, f) = vertex_face(lane, &args.frames, args.faces, pair);
-                    let face = Face::new(v, f, &p);
-                    put(face.normal());
-                    under_way = Some((pair, Double::begin(face.of_four(), from, &p)));
+                    let begun = nth(lane, &args.vf, is_begun, i as u32);
+                    under_way = Some((begun.0, U::of_face(lane, of_kernel, begun, put)));
                 } else {
-                    let (pair, from) = nth(lane, &args.ee, is_begun, i as u32);
-                    let p = of_edge_edge(lane, args, pair);
-                    let [x, y] = edge_edge(lane, &args.frames, args.edges, pair);
-                    let edges = Edges::new(x, y, &p);
-                    put(edges.normal());
-                    under_way = Some((pair, Double::begin(edges, from, &p)));
+                    let begun = nth(lane, &args.ee, is_begun, i as u32);
+                    under_way = Some((begun.0, U::of_edges(lane, of_kernel, begun, put)));
                 }
             }
             // Lanes that drew and lanes that did not step side by side.

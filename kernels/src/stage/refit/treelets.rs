@@ -46,7 +46,7 @@ pub fn treelets<R: Real, V: Volume, B: Block>(block: &mut B, args: &TreeletsArgs
         while i < leaves {
             let place = lane.read(args.leaf_places, first + i);
             let link = Link { link: place.link, last: first + i };
-            let volume: V = leaf::volume(lane, &args.frames, args.faces, link.triangle(), args.margin);
+            let volume: V = leaf::volume(lane, &args.frames, args.faces, link.triangle(), args.growth);
             chip.put(lane, i, volume);
             lane.store_relaxed(args.nodes, place.node, link.with(volume));
             i += lanes;

@@ -8,9 +8,11 @@
 //! so only their sides count.
 
 mod list;
+mod thick;
 mod triangles;
 
 pub use list::{Row, Shape, all_within};
+pub use thick::{Place, Places};
 pub use triangles::{least_squared, triangles_squared};
 
 use crate::case::Features;
@@ -27,8 +29,11 @@ pub struct Squared(BigRational);
 
 /// Returns coordinates as integers: all times `2^grid`.
 fn integers<const N: usize>(points: [[f64; 3]; N]) -> ([Point; N], u64) {
-    let exact = points.map(|p| p.map(exact));
-    // A finite f64 is a fraction whose denominator is a power of two.
+    on_grid(points.map(|p| p.map(exact)))
+}
+
+/// The same of fractions whose denominators are powers of two, as those of every finite f64 are.
+fn on_grid<const N: usize>(exact: [[BigRational; 3]; N]) -> ([Point; N], u64) {
     let bits = |x: &BigRational| x.denom().bits() - 1;
     let grid = exact.iter().flatten().map(bits).max().unwrap_or(0);
     (exact.map(|p| p.map(|x| x.numer() << (grid - bits(&x)))), grid)

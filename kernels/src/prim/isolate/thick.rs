@@ -1,0 +1,228 @@
+//! Two features in motion whose radii differ between vertices: until when they certainly stay farther
+//! apart than a separation and both radii, and a time at which they certainly are within. In f64.
+//!
+//! A control vector is the difference of two vertices; its radius is the sum of theirs. A point of the
+//! hull is a mixture of control vectors, and its radius the same mixture of radii: see
+//! [`crate::prim::near`] for the law of nearest points.
+//!
+//! *Farther.* Let `n` be any direction of length 1, and all control vectors at least the separation
+//! and their own radius along it. Then so is every point of the hull, the nearest among them. Each is
+//! linear in time, so the time until which that holds is the least of four quotients, as in
+//! [`super::hull`]. The best direction leans towards vertices with a larger radius. It is that which
+//! parts the cone around a corner, a side or the whole hull: one of nine, and the best of them is taken.
+//! A direction that is not the best costs steps and no truth.
+//!
+//! *Within.* At a time, the nearest points are within the separation and the least radius that
+//! [`Radii::of_nearest`] leaves them, all roundings included.
+//!
+//! Between both is a gap: points beside the nearest ones, with larger radii, come within theirs
+//! sooner. With a slope `k` of the radius along a feature that is `k^2 / 2` of the distance. A pair
+//! that stays in it is not decided.
+
+use super::advance::Advanced;
+use super::hull::Hull;
+use super::ladder::met;
+use super::pair::{Pair, sum};
+use super::separation::ADVANCES;
+use crate::math::tolerance::{DISTANCE_ERROR, Tolerance};
+use crate::math::{Real, Vec3};
+use crate::prim::inclusion::{Grid, Params, Verdict};
+use crate::prim::near::{Radii, shortest};
+
+/// Control vectors err by `4u` of the reach, their differences by `9u`: nine times as much as those of
+/// positions, from which the bounds of distances are derived; and they are up to twice as long. Ratio,
+/// rounded up.
+const RESTS: f64 = 32.0;
+/// Steps of a near pair before times ahead are tested.
+const PATIENCE: u32 = 16;
+/// How often the time that is tested ahead doubles: from a tolerance up to the end of the step.
+const AHEAD: u32 = 40;
+
+/// A pair under way.
+#[derive(Clone, Copy, Debug)]
+pub struct Uneven {
+    hull: Hull<f64, 4>,
+    /// The radius of each control vector, in its units.
+    radii: [f64; 4],
+    separation: f64,
+    /// Within so much more, and for long, is near; and a time in which nothing moves farther.
+    slack: f64,
+    time_tolerance: f64,
+    at: f64,
+    end: f64,
+    steps: u32,
+    most: u32,
+}
+
+impl Uneven {
+    /// At the start. Radii are those of the control vectors, in the unit of the scene.
+    #[inline(always)]
+    pub fn begin(pair: &Pair<f64, 4>, radii: [f64; 4], p: &Params) -> Self {
+        let slack = pair.scaled(p.tolerance).max(f64::ADVANCE_FINEST * pair.reach);
+        Uneven {
+            hull: pair.hull(),
+            radii: radii.map(|radius| pair.scaled(radius)),
+            separation: pair.scaled(p.min_separation),
+            slack,
+            time_tolerance: pair.time_tolerance(slack),
+            at: 0.0,
+            end: pair.end,
+            steps: 0,
+            // Nothing is known of what is not finite.
+            most: if pair.finite { p.max_iterations.max(ADVANCES) } else { 0 },
+        }
+    }
+
+    /// Whether it is a vertex and a face.
+    #[inline(always)]
+    pub fn is_face(&self) -> bool {
+        self.hull.is_face
+    }
+
+    /// A step; once it was the last, the verdict.
+    #[inline(always)]
+    pub fn step(&mut self, p: &Params) -> Option<Verdict> {
+        let undecided = |from: f64, ended| Verdict::undecided(from.min(p.end), p.end, 0, ended);
+        Some(match self.advance()? {
+            Advanced::Apart => Verdict::separated(p.end, 0),
+            Advanced::Within { from, to } => met(from, to, p).unwrap_or(undecided(from, false)),
+            Advanced::Near { from } => undecided(from, false),
+            Advanced::Open { from } => undecided(from, self.steps >= self.most),
+        })
+    }
+
+    /// A step; the result, once it is final.
+    #[inline(always)]
+    fn advance(&mut self) -> Option<Advanced<f64>> {
+        let (t, end, short) = (self.at, self.end, self.time_tolerance);
+        if self.steps >= self.most {
+            return Some(Advanced::Open { from: t });
+        }
+        self.steps += 1;
+        if self.is_within(t) {
+            return Some(Advanced::Within { from: t, to: t });
+        }
+        let x = self.vectors(t);
+        let (n, height) = self.direction(&x);
+        let next = self.until(&x, n).map_or(t, |next| next.max(t));
+        if next >= end {
+            return Some(Advanced::Apart);
+        }
+        if height <= self.separation + self.slack || next - t < 0.25 * short {
+            let to = (next + short).min(end);
+            if self.is_within(to) {
+                return Some(Advanced::Within { from: next, to });
+            }
+            if next - t < 0.02 * short || self.steps > PATIENCE {
+                return Some(self.look_ahead(next));
+            }
+        }
+        self.at = next;
+        None
+    }
+
+    /// Whether a later time is certain; nothing is before `from`.
+    #[inline(always)]
+    fn look_ahead(&self, from: f64) -> Advanced<f64> {
+        let mut ahead = self.time_tolerance;
+        for _ in 0..AHEAD {
+            ahead += ahead;
+            let to = (from + ahead).min(self.end);
+            if self.is_within(to) {
+                return Advanced::Within { from, to };
+            }
+            if to >= self.end {
+                break;
+            }
+        }
+        Advanced::Near { from }
+    }
+
+    #[inline(always)]
+    fn vectors(&self, t: f64) -> [Vec3<f64>; 4] {
+        // As in `Pair::at`.
+        self.hull.w.map(|[start, end]| start * (1.0 - t) + end * t)
+    }
+
+    /// Whether nearest points at a time are certainly within the separation and their radii.
+    #[inline(always)]
+    fn is_within(&self, t: f64) -> bool {
+        let ([a, b, c, _], [x, y, z, _]) = (self.vectors(t), self.radii);
+        let reach = RESTS * self.hull.reach;
+        let (distance, radii) = if self.hull.is_face {
+            let of = [a * -1.0, a - b, a - c];
+            let distance = shortest::<true>(of);
+            (distance, Radii::along(x, [y - x, z - x]).of_nearest::<true>(of, reach, distance))
+        } else {
+            let of = [a, c - a, b - a];
+            let distance = shortest::<false>(of);
+            (distance, Radii::along(x, [z - x, y - x]).of_nearest::<false>(of, reach, distance))
+        };
+        let most = (distance + DISTANCE_ERROR * reach + f64::ISOLATE_UNDERFLOW) * f64::INCLUSION_UP;
+        most <= (self.separation + radii.least) * f64::INCLUSION_DOWN
+    }
+
+    /// The direction along which the hull is highest above its radii, and that height.
+    #[inline(always)]
+    fn direction(&self, x: &[Vec3<f64>; 4]) -> (Vec3<f64>, f64) {
+        let mut best = (x[0], -f64::INFINITY);
+        let mut take = |n: Vec3<f64>| {
+            let over = 1.0 / Real::sqrt(n.dot(n));
+            // A side without a length, or one that is steeper than it is long, has no direction.
+            if !(over > 0.0 && over < f64::INFINITY) {
+                return;
+            }
+            let mut height = f64::INFINITY;
+            for k in 0..4 {
+                height = height.lesser(n.dot(x[k]) * over - self.radii[k]);
+            }
+            if height > best.1 {
+                best = (n * over, height);
+            }
+        };
+        for corner in x {
+            take(*corner);
+        }
+        let sides = if self.hull.is_face {
+            [(0, 1), (1, 2), (2, 0), (2, 0)]
+        } else {
+            [(0, 1), (0, 2), (1, 3), (2, 3)]
+        };
+        for (i, j) in sides {
+            let (e, rise) = (x[j] - x[i], self.radii[j] - self.radii[i]);
+            let ee = e.dot(e);
+            let foot = x[i] - e * (x[i].dot(e) / ee);
+            let upright = Real::sqrt((1.0 - rise * rise / ee) / foot.dot(foot));
+            take(e * (rise / ee) + foot * upright);
+        }
+        let (e, f) = (x[1] - x[0], x[2] - x[0]);
+        let (rise_e, rise_f) = (self.radii[1] - self.radii[0], self.radii[2] - self.radii[0]);
+        let (ee, ff, ef) = (e.dot(e), f.dot(f), e.dot(f));
+        let over = 1.0 / (ee * ff - ef * ef);
+        let lean = e * ((ff * rise_e - ef * rise_f) * over) + f * ((ee * rise_f - ef * rise_e) * over);
+        let across = e.cross(f);
+        let upright = Real::sqrt((1.0 - lean.dot(lean)) / across.dot(across));
+        take(lean + across * if across.dot(x[0]) < 0.0 { -upright } else { upright });
+        best
+    }
+
+    /// The time until which all control vectors are farther along `n` than the separation and their
+    /// radii. `None` if they are not even at the time of `x`. As [`Hull::until`].
+    #[inline(always)]
+    fn until(&self, x: &[Vec3<f64>; 4], n: Vec3<f64>) -> Option<f64> {
+        let length = Real::sqrt(n.dot(n)) * f64::INCLUSION_UP;
+        let error = sum(n) * (f64::ADVANCE_POINT * self.hull.reach + f64::ISOLATE_UNDERFLOW);
+        let (mut next, mut is_farther) = (f64::NEVER, true);
+        for k in 0..4 {
+            let over = (self.separation + self.radii[k]) * f64::INCLUSION_UP + f64::ISOLATE_UNDERFLOW;
+            let need = (over * length + error) * f64::INCLUSION_UP;
+            let (start, end) = (n.dot(self.hull.w[k][0]) - need, n.dot(self.hull.w[k][1]) - need);
+            let reaches = !(end > 0.0);
+            is_farther &= (n.dot(x[k]) > need) & (!reaches | (start > 0.0));
+            let less = if reaches { start - end } else { 1.0 };
+            let root = start / less * f64::INCLUSION_DOWN;
+            next = if reaches { next.min(root) } else { next };
+        }
+        if is_farther { Some(next) } else { None }
+    }
+}

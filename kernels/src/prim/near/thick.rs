@@ -1,0 +1,250 @@
+//! Two features with a thickness at rest: whether they are within a distance and both radii.
+//!
+//! A point of a feature has the radius of its vertices, interpolated linearly. Two features are near
+//! if nearest points of both are within the distance and both their radii. Nearest points need not be
+//! unique, as between parallel edges, and roundings choose among many between edges that are almost
+//! so. Therefore points that are as near as the nearest ones, up to `DISTANCE_TIED` of the reach,
+//! count as nearest: a pair is listed if any of them are within. So no pair is missed, and each pair
+//! that is listed has points as near as that.
+//!
+//! # The bound
+//!
+//! As in the parent module: `u`, the reach, `l`. Radii are linear in the parameters, so their range
+//! over points that may be nearest is that at the ends of stretches:
+//!
+//! 1. *A side*, if its distance is tied with the shortest. Its parameter errs by `30u l / |e|`: 24u
+//!    as the parent derives, and three differences of the input. That is below `DISTANCE_WEIGHT` of
+//!    the reach, over `|e|`. A side that is shorter counts as a whole.
+//! 2. *Inside.* `t` errs by `c = y / h`, with the parent's `y`: `46u l + 8/3 u l D / h`, and `6u l` and
+//!    `2u l D / h` of the input. That is below `2 DISTANCE_WEIGHT` of the reach and a quarter of it
+//!    times `D / h`. `s` follows `t` on a line, `s = -(n + t m)`, and errs by `19u l / |p|` more. So
+//!    the true point is on the part of the line within `c`, inside of the domain. All its points are
+//!    tied: the distance grows by `y^2 / 2D`, or `y`, as in the parent.
+//! 3. *Flat features.* Points of an interior that lie on a side have radii between those of sides.
+//!
+//! Both are clamped to the range of the corners. The radius at given parameters errs by `8u` of the
+//! sum of magnitudes, which widens the range.
+
+use super::{Near, Scaled, clamped, differences, nearest, reach};
+use crate::abi::Point;
+use crate::exec::RowMap;
+use crate::math::tolerance::{
+    DISTANCE_CERTAIN, DISTANCE_ERROR, DISTANCE_FILTERED, DISTANCE_TIED, DISTANCE_UP, DISTANCE_WEIGHT, U32,
+    U64,
+};
+use crate::math::{Real, Vec3, round};
+use core::marker::PhantomData;
+
+/// A vertex and a face: the nearest points, unless they are certainly farther apart than `distance`
+/// and their radii, which are in the order of the corners.
+#[inline(always)]
+pub fn thick_vertex_face<R: Real>(corners: [Vec3<R>; 4], radii: [f64; 4], distance: f64) -> Option<Near> {
+    within::<true>(differences::<R, f64, true>(corners), radii, distance)
+}
+
+/// The same of two edges.
+#[inline(always)]
+pub fn thick_edge_edge<R: Real>(corners: [Vec3<R>; 4], radii: [f64; 4], distance: f64) -> Option<Near> {
+    within::<false>(differences::<R, f64, false>(corners), radii, distance)
+}
+
+/// As [`super::Filter`], within the distance and the largest radius of each feature.
+pub struct ThickFilter<R, const TRIANGLE: bool> {
+    distance: f32,
+    positions: PhantomData<R>,
+}
+
+impl<R, const TRIANGLE: bool> ThickFilter<R, TRIANGLE> {
+    /// For that distance, a length from 0.
+    pub fn new(distance: f64) -> Self {
+        ThickFilter { distance: round::up(distance), positions: PhantomData }
+    }
+}
+
+impl<R: Real, const TRIANGLE: bool> RowMap for ThickFilter<R, TRIANGLE> {
+    type Number = R;
+    type Row = [Point<R>; 4];
+    #[inline(always)]
+    fn at_once(&self, row: [Point<R>; 4]) -> u32 {
+        let of = differences::<R, f32, TRIANGLE>(row.map(|point| point.at));
+        let reach = reach(&of);
+        let [a, b, c, d] = row.map(|point| point.radius);
+        let radius = if TRIANGLE { a + b.greater(c).greater(d) } else { a.greater(b) + c.greater(d) };
+        let distance = self.distance + round::up(radius.wide());
+        let most = (distance + super::ERRORS * U32 * reach) * (1.0 + 8.0 * U32);
+        let apart = nearest::<f32, TRIANGLE>(of).squared > most * most;
+        !(apart & DISTANCE_FILTERED.contains(&reach)) as u32
+    }
+}
+
+/// The nearest points, unless they are certainly beyond the distance and their radii.
+#[inline(always)]
+fn within<const TRIANGLE: bool>(of: [Vec3<f64>; 3], radii: [f64; 4], distance: f64) -> Option<Near> {
+    let Scaled { reach, found, up, down } = Scaled::of::<TRIANGLE>(of);
+    let (distance, radii) = (distance * up, radii.map(|radius| radius * up));
+    let shortest = Real::sqrt(found.squared);
+    let range = Radii::new::<TRIANGLE>(radii).of_nearest::<TRIANGLE>(of.map(|v| v * up), reach, shortest);
+    let most = (distance + range.most + DISTANCE_ERROR * reach) * DISTANCE_UP;
+    if found.squared > most * most {
+        return None;
+    }
+    let least = (distance + range.least - DISTANCE_CERTAIN * reach) * (2.0 - DISTANCE_UP);
+    Some(Near {
+        squared: found.squared * down * down,
+        at: found.at,
+        certain: least > 0.0 && found.squared <= least * least,
+    })
+}
+
+/// The range of both radii, summed, over points that may be nearest.
+#[derive(Clone, Copy, Debug)]
+pub struct Range {
+    /// No more than the least.
+    pub least: f64,
+    /// No less than the largest.
+    pub most: f64,
+}
+
+impl Range {
+    #[inline(always)]
+    fn add(&mut self, ends: [f64; 2], spread: f64) {
+        let [a, b] = ends;
+        self.least = self.least.lesser(a.lesser(b) - spread);
+        self.most = self.most.greater(a.greater(b) + spread);
+    }
+}
+
+/// Both radii, summed, of the points at parameters `s` and `t`.
+#[derive(Clone, Copy, Debug)]
+pub struct Radii {
+    base: f64,
+    along: [f64; 2],
+    /// The least and the largest sum of corners.
+    range: Range,
+}
+
+impl Radii {
+    /// Of a vertex and the corners of a face, or of the ends of two edges.
+    #[inline(always)]
+    pub fn new<const TRIANGLE: bool>([a, b, c, d]: [f64; 4]) -> Self {
+        if TRIANGLE {
+            let range = Range { least: a + b.lesser(c).lesser(d), most: a + b.greater(c).greater(d) };
+            Radii { base: a + b, along: [c - b, d - b], range }
+        } else {
+            let range = Range { least: a.lesser(b) + c.lesser(d), most: a.greater(b) + c.greater(d) };
+            Radii { base: a + c, along: [b - a, d - c], range }
+        }
+    }
+
+    /// Of a radius at the parameters 0, and how much it grows along each. The range of corners is not
+    /// known.
+    #[inline(always)]
+    pub fn along(base: f64, along: [f64; 2]) -> Self {
+        let range = Range { least: 0.0, most: f64::INFINITY };
+        Radii { base, along, range }
+    }
+
+    /// At parameters, up to `8u` of the magnitudes.
+    #[inline(always)]
+    fn at(&self, s: f64, t: f64) -> f64 {
+        self.base + self.along[0] * s + self.along[1] * t
+    }
+
+    /// The range over all points that may be nearest, with all roundings. `shortest` is their
+    /// distance as computed.
+    #[inline(always)]
+    pub fn of_nearest<const TRIANGLE: bool>(&self, of: [Vec3<f64>; 3], reach: f64, shortest: f64) -> Range {
+        let [r, p, q] = of;
+        let mut range = Range { least: f64::INFINITY, most: 0.0 };
+        let tied = (shortest + DISTANCE_TIED * reach) * DISTANCE_UP;
+        // The first point and the way of each side. A triangle has three, one of them twice.
+        let last = if TRIANGLE { ([1.0, 0.0], [-1.0, 1.0]) } else { ([0.0, 1.0], [1.0, 0.0]) };
+        let other = if TRIANGLE { last } else { ([1.0, 0.0], [0.0, 1.0]) };
+        for ([s, t], [along_s, along_t]) in [([0.0, 0.0], [1.0, 0.0]), ([0.0, 0.0], [0.0, 1.0]), last, other]
+        {
+            let (x, e) = (r + p * s + q * t, p * along_s + q * along_t);
+            let ee = e.dot(e);
+            let at = clamped(-x.dot(e) / ee, 1.0);
+            let y = x + e * at;
+            if y.dot(y) <= tied * tied {
+                let off = part(DISTANCE_WEIGHT * reach / Real::sqrt(ee));
+                let radius = |at: f64| self.at(s + along_s * at, t + along_t * at);
+                range.add([radius((at - off).greater(0.0)), radius((at + off).lesser(1.0))], 0.0);
+            }
+        }
+        self.inside::<TRIANGLE>([r, p, q], reach, shortest, &mut range);
+        let magnitudes = self.base + Real::abs(self.along[0]) + Real::abs(self.along[1]);
+        let rounding = 8.0 * U64 * magnitudes;
+        if range.most < range.least {
+            // Of what is not finite nothing is known.
+            return Range { least: self.range.least - rounding, most: self.range.most + rounding };
+        }
+        Range {
+            least: range.least.greater(self.range.least) - rounding,
+            most: range.most.lesser(self.range.most) + rounding,
+        }
+    }
+
+    /// Adds the points of the line on which the shortest is, if it is inside.
+    #[inline(always)]
+    fn inside<const TRIANGLE: bool>(
+        &self,
+        [r, p, q]: [Vec3<f64>; 3],
+        reach: f64,
+        shortest: f64,
+        range: &mut Range,
+    ) {
+        let pp = p.dot(p);
+        let (m, n) = (p.dot(q) / pp, r.dot(p) / pp);
+        let (y, z) = (q - p * m, r - p * n);
+        let yy = y.dot(y);
+        let (t, h) = (-y.dot(z) / yy, Real::sqrt(yy));
+        let s = -(n + t * m);
+        let off = part(DISTANCE_WEIGHT * reach * (2.0 + 0.25 * (shortest / h)) / h);
+        let spread = part(DISTANCE_WEIGHT * reach / Real::sqrt(pp));
+        // The line is (s - m d, t + d). Numbers that are none leave nothing of it.
+        let mut line = Line { from: -off, to: off };
+        line.cut(-1.0, t);
+        line.cut(1.0, 1.0 - t);
+        line.cut(m, s + spread);
+        if TRIANGLE {
+            line.cut(1.0 - m, 1.0 - s - t + spread);
+        } else {
+            line.cut(-m, 1.0 - s + spread);
+        }
+        if line.from <= line.to {
+            let radius = |d: f64| self.at(s - m * d, t + d);
+            range.add([radius(line.from), radius(line.to)], Real::abs(self.along[0]) * spread);
+        }
+    }
+}
+
+/// A stretch of a line.
+struct Line {
+    from: f64,
+    to: f64,
+}
+
+impl Line {
+    /// To where `rate` times the way is at most `room`. Nothing is left if one is no number.
+    #[inline(always)]
+    fn cut(&mut self, rate: f64, room: f64) {
+        let at = room / rate;
+        if rate > 0.0 {
+            self.to = if at < self.to { at } else { self.to };
+        } else if rate < 0.0 {
+            self.from = if at > self.from { at } else { self.from };
+        } else if !(rate == 0.0 && room >= 0.0) {
+            self.to = -f64::INFINITY;
+        }
+        if room.is_nan() {
+            self.to = -f64::INFINITY;
+        }
+    }
+}
+
+/// A part of 1: at most 1, and all of it for a number that is none.
+#[inline(always)]
+fn part(x: f64) -> f64 {
+    if x < 1.0 { x } else { 1.0 }
+}
