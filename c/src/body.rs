@@ -5,7 +5,7 @@ use crate::motion::{NearmissPose, UNMOVED};
 use crate::rows::{NearmissNumber, NearmissRows, items, text};
 use nearmiss::mesh::Problem;
 use nearmiss::scene::{CollisionFilter, Pose};
-use nearmiss::{Body, Error, Mesh};
+use nearmiss::{Body, Error, Mesh, Thickness};
 use std::ffi::c_char;
 use std::ptr::null;
 
@@ -64,6 +64,11 @@ pub struct NearmissBody {
     pub mask: u32,
     /// The pose of a rigid body at the start.
     pub pose: NearmissPose,
+    /// Thickness: radii around the surface that belong to the body, lengths of at least 0. Near queries
+    /// and queries in motion add those of both bodies to their distance; all others ignore them.
+    pub radii: *const f64,
+    /// How many radii there are: 0 for none, 1 for all vertices, or one for each.
+    pub radius_count: usize,
 }
 
 /// A deformable body without a mesh, in environment 0, that collides with all others and itself.
@@ -87,7 +92,19 @@ pub extern "C" fn nearmiss_body() -> NearmissBody {
         group,
         mask,
         pose: UNMOVED,
+        radii: null(),
+        radius_count: 0,
     }
+}
+
+/// A thickness of so many radii.
+pub(crate) fn thickness(radii: &[f64]) -> Result<Thickness, Error> {
+    nearmiss::memory::require("radii", size_of_val(radii) as u64)?;
+    Ok(match radii {
+        [] => Thickness::default(),
+        [one] => Thickness::Same(*one),
+        each => Thickness::Each(each.to_vec()),
+    })
 }
 
 /// A flag of the caller.
@@ -105,13 +122,14 @@ impl NearmissBody {
     /// # Safety
     /// Its pointers point to what the header says.
     pub(crate) unsafe fn body(&self) -> Result<Body, Error> {
-        // SAFETY: the caller's promise, of all three.
-        let (name, points, corners) = unsafe {
+        // SAFETY: the caller's promise, of all four.
+        let (name, points, corners, radii) = unsafe {
             let name = text(self.name).unwrap_or_else(|| "a body".to_owned());
             let count = self.triangle_count.saturating_mul(3);
             let points = self.positions.points(&format!("positions of {name}"))?;
             let corners = items(self.triangles, count, &format!("triangles of {name}"))?;
-            (name, points, corners)
+            let radii = items(self.radii, self.radius_count, &format!("radii of {name}"))?;
+            (name, points, corners, radii)
         };
         let make = match self.kind {
             0 => Body::fixed,
@@ -138,7 +156,8 @@ impl NearmissBody {
         nearmiss::memory::require("triangles", size_of_val(corners) as u64)?;
         let faces = corners.as_chunks::<3>().0.to_vec();
         let body = make(Mesh::new(name, points.positions()?, faces)?).with_filter(filter);
-        body.check_filter()?;
+        let body = body.with_thickness(thickness(radii)?);
+        body.validate()?;
         if is_rigid { body.at(Pose::from(self.pose)) } else { Ok(body) }
     }
 

@@ -1,6 +1,6 @@
 //! Bodies that come, go and change, and pairs of them that are left out.
 
-use crate::body::NearmissBody;
+use crate::body::{NearmissBody, thickness};
 use crate::detector::NearmissDetector;
 use crate::error::{NearmissCode, NearmissError, call, given, refused};
 use crate::rows::items;
@@ -58,6 +58,30 @@ pub extern "C" fn nearmiss_detector_remove(
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
     NearmissDetector::work(detector, error, |own| own.detector.remove(own.body(id)?).map(drop))
+}
+
+/// Sets the thickness of a body, from the next query on, which rebuilds: `count` radii, as those of
+/// `NearmissBody`. If it is the same, nothing changes. Another one ends the preparation of
+/// submissions.
+///
+/// Fails with `NEARMISS_INVALID_ARGUMENT` for a radius that is no length, and for another number of
+/// radii. Then the thickness is as before.
+///
+/// # Safety
+/// `radii` points to that many numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nearmiss_detector_set_thickness(
+    detector: Option<&mut NearmissDetector>,
+    id: u32,
+    radii: *const f64,
+    count: usize,
+    error: Option<&mut MaybeUninit<NearmissError>>,
+) -> NearmissCode {
+    NearmissDetector::work(detector, error, |own| {
+        // SAFETY: the caller's promise.
+        let radii = unsafe { items(radii, count, "radii") }?;
+        own.detector.set_thickness(own.body(id)?, thickness(radii)?)
+    })
 }
 
 /// The pairs of bodies in a list of the caller.

@@ -13,6 +13,7 @@ use crate::pose::Pose;
 use crate::query::{Query, queries_of};
 use crate::rows::TrianglePairs;
 use crate::scene::Body;
+use crate::thickness::thickness_of;
 use crate::turns::python;
 use nearmiss::Interrupt;
 use nearmiss::contacts::Geometry as Places;
@@ -255,6 +256,24 @@ impl Detector {
             let list = key::pairs(detector.scene(), &pairs)?;
             detector.leave_out(&list)
         })
+    }
+
+    /// Set the thickness of a body, from the next query on.
+    ///
+    /// - `body`: its number or name.
+    /// - `thickness`: a radius, a length of at least 0, or one for each vertex.
+    ///
+    /// Another thickness ends the preparation of submissions, and the next query builds tiles or trees.
+    /// Raises InvalidArgumentError for a thickness that is no length: then it is as before.
+    fn set_thickness(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = body_of)] body: Key,
+        thickness: Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let id = self.body(py, body)?;
+        let thickness = thickness_of(&thickness, &format!("body {id}"))?;
+        self.run(py, Does::Edits, |detector| detector.set_thickness(id, thickness))
     }
 
     /// Pairs of bodies that are left out: the smaller number first, ascending.

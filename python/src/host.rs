@@ -70,7 +70,7 @@ pub fn are_floats(array: &Bound<'_, PyUntypedArray>) -> bool {
 }
 
 /// Refuses what are no numbers that become floats or doubles.
-fn are_numbers(array: &Bound<'_, PyUntypedArray>, what: &str) -> PyResult<()> {
+pub fn are_numbers(array: &Bound<'_, PyUntypedArray>, what: &str) -> PyResult<()> {
     let dtype = array.dtype();
     match (dtype.kind(), dtype.itemsize()) {
         (b'f' | b'i' | b'u', ..=8) => Ok(()),

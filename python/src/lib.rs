@@ -30,6 +30,7 @@ mod questions;
 mod research;
 mod rows;
 mod scene;
+mod thickness;
 mod turns;
 mod watch;
 

@@ -7,9 +7,10 @@ use crate::key::{self, Key, Pairs, bodies, body_of, numbers, pairs_of};
 use crate::matrix::pose_of;
 use crate::pose::Pose;
 use crate::query::{Remade, remade};
-use nearmiss::Mesh;
+use crate::thickness::{self, thickness_of};
 use nearmiss::scene::{BodyKind, CollisionFilter};
 use nearmiss::words::counted;
+use nearmiss::{Mesh, Thickness};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -26,7 +27,11 @@ use pyo3::types::{PyDict, PyTuple};
 ///   is all bits except the lowest.
 /// - `name`: name of the body in messages; it may be used in place of its number.
 /// - `pose`: of a rigid body, where it begins: a Pose or a (4, 4) array. Default: where its mesh is.
+/// - `thickness`: radius around the surface that belongs to the body, a length of at least 0; or one
+///   for each vertex, in between linear. Near queries and queries in motion add those of both bodies
+///   to their distance; all others ignore them.
 ///
+/// Raises InvalidArgumentError for a thickness that is no length.
 /// Raises InputError for vertices that are not finite and for indices without a vertex.
 #[pyclass(module = "nearmiss", frozen)]
 pub struct Body {
@@ -39,10 +44,10 @@ impl Body {
     #[pyo3(
         signature = (
             vertices, faces, *, kind = "deformable", self_collision = None, environment = Some(0),
-            group = u32::MAX, mask = u32::MAX, name = "a mesh", pose = None,
+            group = u32::MAX, mask = u32::MAX, name = "a mesh", pose = None, thickness = None,
         ),
         text_signature = "(vertices, faces, *, kind='deformable', self_collision=None, environment=0, \
-            group=0xFFFFFFFF, mask=0xFFFFFFFF, name='a mesh', pose=None)"
+            group=0xFFFFFFFF, mask=0xFFFFFFFF, name='a mesh', pose=None, thickness=0.0)"
     )]
     #[allow(clippy::too_many_arguments, reason = "they are named")]
     fn new(
@@ -56,6 +61,7 @@ impl Body {
         #[pyo3(from_py_with = mask_of)] mask: u32,
         name: &str,
         pose: Option<Bound<'_, PyAny>>,
+        thickness: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Body> {
         let make = match kind {
             "deformable" => nearmiss::Body::deformable,
@@ -71,9 +77,11 @@ impl Body {
         let given = positions(vertices, &format!("vertices of {name}"), Most::OfAnyMesh)?;
         let triangles = self::faces(faces, name, given.len())?;
         let on_itself = self_collision;
+        let thickness = thickness.map_or(Ok(Thickness::default()), |given| thickness_of(&given, name))?;
         let filter = CollisionFilter { environment, group, mask, self_collision: on_itself };
         let made = py.detach(|| Mesh::new(name, given, triangles).map(|mesh| make(mesh).with_filter(filter)));
-        let body = made.and_then(|body| body.check_filter().map(|()| body)).map_err(raised)?;
+        let made = made.map(|body| body.with_thickness(thickness));
+        let body = made.and_then(|body| body.validate().map(|()| body)).map_err(raised)?;
         let Some(pose) = pose else { return Ok(Body { body }) };
         if body.kind() != BodyKind::Rigid {
             return Err(choice(
@@ -101,6 +109,12 @@ impl Body {
     fn pose(&self, py: Python<'_>) -> PyResult<Option<Pose>> {
         let is_rigid = self.body.kind() == BodyKind::Rigid;
         is_rigid.then(|| Pose::known(py, self.body.poses()[0])).transpose()
+    }
+
+    /// Thickness: a radius, or an array of one for each vertex.
+    #[getter]
+    fn thickness<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        thickness::to_python(py, self.body.thickness())
     }
 
     /// Number of vertices.
@@ -132,6 +146,7 @@ impl Body {
         named.set_item("mask", meets.mask)?;
         named.set_item("name", own.name())?;
         named.set_item("pose", body.getattr("pose")?)?;
+        named.set_item("thickness", body.getattr("thickness")?)?;
         remade(body.get_type(), mesh, named)
     }
 

@@ -9,6 +9,7 @@ mod one_detector;
 mod poses;
 mod refusals;
 mod submitted;
+mod thickness;
 
 use nearmiss::Body;
 use nearmiss::mesh::Positions;

@@ -49,6 +49,12 @@ pub struct QueryArgs {
     /// Test the two meshes against each other only
     #[arg(long)]
     pub no_self_collision: bool,
+    /// Give each mesh a thickness: a radius (with --near or a step)
+    ///
+    /// Features count as near, or in contact, within the distance and both radii. With a thickness
+    /// `--near 0` is the pairs whose surfaces of that thickness touch.
+    #[arg(long, value_name = "R", allow_hyphen_values = true)]
+    pub thickness: Option<f64>,
     /// Test triangles that share a vertex too (with --discrete)
     ///
     /// They are reported if they meet beyond the vertices that they share.

@@ -2,6 +2,7 @@
 
 use super::DetectArgs;
 use crate::report::Format;
+use nearmiss::Body;
 use nearmiss::error::Error;
 use nearmiss::query::{Continuous, Discrete, Earliest, Query, QueryKind, Rebuild};
 use nearmiss::research::KindExt;
@@ -15,12 +16,13 @@ fn refused<T>(what: impl Into<String>, advice: impl Into<String>) -> Result<T, E
 }
 
 impl DetectArgs {
-    /// The filter of a mesh of the command line.
-    pub fn filter(&self) -> CollisionFilter {
+    /// A mesh of the command line, with its filter and thickness.
+    pub fn body(&self, body: Body) -> Body {
+        let body = body.with_thickness(self.query.thickness.unwrap_or(0.0));
         if self.query.no_self_collision {
-            CollisionFilter::without_self_collision()
+            body.with_filter(CollisionFilter::without_self_collision())
         } else {
-            CollisionFilter::default()
+            body.with_filter(CollisionFilter::default())
         }
     }
 
@@ -39,6 +41,10 @@ impl DetectArgs {
         if self.query.assume_free && kind.is_at_rest() {
             let what = format!("--assume-free has no effect: a {kind} query has no step");
             return refused(what, "remove it, or add --continuous or --earliest");
+        }
+        if self.query.thickness.is_some() && !kind.is_of_features() {
+            let what = format!("--thickness has no effect: a {kind} query ignores it");
+            return refused(what, "remove it, or add --near L, --continuous or --earliest");
         }
         if let Some(option) = self.accuracy.given().filter(|_| !solver.is_certified()) {
             let what = format!("{option} cannot be used with --solver {solver}");

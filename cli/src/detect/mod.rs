@@ -112,7 +112,7 @@ fn bodies(args: &DetectArgs, reader: &mut Reader) -> Result<(Vec<Body>, Vec<Poly
         told.push(during("reading", || body_by(&args.query.with, reader))?);
     }
     let (bodies, polygons): (Vec<Body>, Vec<Polygons>) = told.into_iter().unzip();
-    let mut bodies: Vec<Body> = bodies.into_iter().map(|body| body.with_filter(args.filter())).collect();
+    let mut bodies: Vec<Body> = bodies.into_iter().map(|body| args.body(body)).collect();
     if args.query.weld {
         for body in &mut bodies {
             let (welded, merged) = body.weld();

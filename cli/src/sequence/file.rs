@@ -2,6 +2,7 @@
 
 use super::exclusions::{ExcludeTable, ExcludedPairs, PairsTable, pairs};
 use super::poses::{PathName, PoseTable, Poses};
+use nearmiss::Thickness;
 use nearmiss::error::Error;
 use nearmiss::mesh::Problem;
 use nearmiss::scene::{BodyKind, CollisionFilter};
@@ -22,6 +23,8 @@ pub struct Described {
     pub poses: Poses,
     /// Its filter.
     pub filter: CollisionFilter,
+    /// Its thickness.
+    pub thickness: Thickness,
     /// Features that it excludes.
     pub exclude: Option<ExcludeTable>,
     /// How messages call it: its name, and the line at which it begins.
@@ -73,7 +76,23 @@ struct BodyTable {
     group: Option<u32>,
     mask: Option<u32>,
     self_collision: Option<bool>,
+    #[serde(default)]
+    thickness: Radii,
     exclude: Option<ExcludeTable>,
+}
+
+/// A radius, or one for each vertex.
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "`thickness` must be a number, or a list of numbers")]
+enum Radii {
+    Same(f64),
+    Each(Vec<f64>),
+}
+
+impl Default for Radii {
+    fn default() -> Radii {
+        Radii::Same(0.0)
+    }
 }
 
 #[derive(Clone, Copy, Default, Deserialize)]
@@ -230,7 +249,11 @@ fn described(path: &Path, line: usize, table: Table) -> Result<Described, Error>
     let name = table.name.unwrap_or_else(stem);
     let called = format!("body {name:?} (line {line})");
     let filter = CollisionFilter { environment, group, mask, self_collision };
-    Ok(Described { name, meshes, kind, poses, filter, exclude, called })
+    let thickness = match table.thickness {
+        Radii::Same(radius) => radius.into(),
+        Radii::Each(radii) => radii.into(),
+    };
+    Ok(Described { name, meshes, kind, poses, filter, thickness, exclude, called })
 }
 
 /// As a file names it.

@@ -117,7 +117,13 @@ impl Sequence {
         let scenes = own.iter().flat_map(|files| files.iter()).filter(|path| is_scene(path)).count();
         let mut all = match &own {
             [files, with] if scenes > 0 => match (&files[..], &with[..]) {
-                ([file], []) => Sequence::read(file, reader)?,
+                ([file], []) if args.query.thickness.is_none() => Sequence::read(file, reader)?,
+                ([_], []) => {
+                    return Err(Error::InvalidArgument {
+                        what: "--thickness cannot be used with a scene (.toml)".into(),
+                        advice: "write `thickness = R` in the tables of its bodies".into(),
+                    });
+                }
                 _ => {
                     return Err(Error::InvalidArgument {
                         what: "a scene (.toml) cannot be combined with other files".into(),
@@ -130,7 +136,7 @@ impl Sequence {
                 let told = own.iter().filter(|files| !files.is_empty()).map(|files| of_mesh(files, reader));
                 let mut told = told.collect::<Result<Vec<_>, _>>()?;
                 for Told { body, .. } in &mut told {
-                    *body = body.clone().with_filter(args.filter());
+                    *body = args.body(body.clone());
                 }
                 let names = numbered(told.len());
                 Sequence::new(told, names)
@@ -284,7 +290,11 @@ fn of_table(
         BodyKind::Rigid => Body::rigid(mesh),
         _ => Body::deformable(mesh),
     };
-    let mut body = body.with_filter(table.filter);
+    let mut body = body.with_filter(table.filter).with_thickness(table.thickness.clone());
+    body.validate().map_err(|e| {
+        let (what, advice) = parts(&e);
+        wrong(path, format!("{}: {what}", table.called), advice)
+    })?;
     if let Track::Poses(poses) = &track {
         for at in 0..poses.frames.len() {
             body.check(&poses.up_to(at)).map_err(|e| {

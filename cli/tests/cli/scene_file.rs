@@ -1,6 +1,7 @@
 //! `detect scene.toml`: bodies of every kind, what a file may say, and what is wrong with it.
 
 mod exclusions;
+mod thickness;
 
 use super::{Folder, ok, refused, summary};
 use serde_json::Value;

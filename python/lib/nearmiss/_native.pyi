@@ -232,7 +232,11 @@ class Body:
       is all bits except the lowest.
     - `name`: name of the body in messages; it may be used in place of its number.
     - `pose`: of a rigid body, where it begins: a Pose or a (4, 4) array. Default: where its mesh is.
+    - `thickness`: radius around the surface that belongs to the body, a length of at least 0; or one
+      for each vertex, in between linear. Near queries and queries in motion add those of both bodies
+      to their distance; all others ignore them.
 
+    Raises InvalidArgumentError for a thickness that is no length.
     Raises InputError for vertices that are not finite and for indices without a vertex.
     """
 
@@ -248,6 +252,7 @@ class Body:
         mask: int = 0xFFFFFFFF,
         name: str = "a mesh",
         pose: Union[Pose, Array, None] = None,
+        thickness: Union[float, Array] = 0.0,
     ) -> Body: ...
 
     @property
@@ -257,6 +262,10 @@ class Body:
     @property
     def pose(self) -> Pose | None:
         """Pose at which a rigid body begins; None of other bodies."""
+
+    @property
+    def thickness(self) -> Union[float, NDArray[np.float64]]:
+        """Thickness: a radius, or an array of one for each vertex."""
 
     @property
     def vertex_count(self) -> int:
@@ -1179,6 +1188,16 @@ class Detector:
         ends the preparation of submissions, and the next query builds tiles or trees.
         Raises InvalidArgumentError for a body that does not exist, and for a body with itself: then the
         list is as before.
+        """
+
+    def set_thickness(self, body: Key, thickness: Union[float, Array]) -> None:
+        """Set the thickness of a body, from the next query on.
+
+        - `body`: its number or name.
+        - `thickness`: a radius, a length of at least 0, or one for each vertex.
+
+        Another thickness ends the preparation of submissions, and the next query builds tiles or trees.
+        Raises InvalidArgumentError for a thickness that is no length: then it is as before.
         """
 
     @property
