@@ -161,8 +161,8 @@ pub fn distance<R: Real, const TRIANGLE: bool>(corners: [Vec3<R>; 4]) -> (f64, [
     (Real::sqrt(found.squared) * down, found.at)
 }
 
-/// The distance of two features by their differences, as the parent computes it: a triangle's, or
-/// those of two edges.
+/// The distance of two features by their differences `r`, `p`, `q`, as [`vertex_face`] and
+/// [`edge_edge`] compute it.
 #[inline(always)]
 pub fn shortest<const TRIANGLE: bool>(of: [Vec3<f64>; 3]) -> f64 {
     Real::sqrt(nearest::<f64, TRIANGLE>(of).squared)

@@ -15,7 +15,7 @@
 //! *Within.* At a time, the nearest points are within the separation and the least radius that
 //! [`Radii::of_nearest`] leaves them, all roundings included.
 //!
-//! Between both is a gap: points beside the nearest ones, with larger radii, come within theirs
+//! Between both is a gap: points next to the nearest ones, with larger radii, come within theirs
 //! sooner. With a slope `k` of the radius along a feature that is `k^2 / 2` of the distance. A pair
 //! that stays in it is not decided.
 

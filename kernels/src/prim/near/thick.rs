@@ -124,7 +124,7 @@ pub struct Radii {
 }
 
 impl Radii {
-    /// Of a vertex and the corners of a face, or of the ends of two edges.
+    /// Those of a vertex and the corners of a face, or of the ends of two edges.
     #[inline(always)]
     pub fn new<const TRIANGLE: bool>([a, b, c, d]: [f64; 4]) -> Self {
         if TRIANGLE {
@@ -136,8 +136,8 @@ impl Radii {
         }
     }
 
-    /// Of a radius at the parameters 0, and how much it grows along each. The range of corners is not
-    /// known.
+    /// From the radius at the parameters 0, and how much it grows along each. The range of corners is
+    /// not known.
     #[inline(always)]
     pub fn along(base: f64, along: [f64; 2]) -> Self {
         let range = Range { least: 0.0, most: f64::INFINITY };
@@ -176,7 +176,7 @@ impl Radii {
         let magnitudes = self.base + Real::abs(self.along[0]) + Real::abs(self.along[1]);
         let rounding = 8.0 * U64 * magnitudes;
         if range.most < range.least {
-            // Of what is not finite nothing is known.
+            // Nothing is known of what is not finite.
             return Range { least: self.range.least - rounding, most: self.range.most + rounding };
         }
         Range {
