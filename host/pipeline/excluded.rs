@@ -118,12 +118,12 @@ fn partners(scene: &Scene, starts: &[Offsets], looks: &Looks) -> Result<Vec<u32>
     Ok(table.words)
 }
 
-/// All listed pairs of vertices in the numbers of the layout: the smaller first, ascending.
+/// All listed pairs of vertices in the numbers of the layout, each in both orders, ascending.
 fn listed(scene: &Scene, starts: &[Offsets]) -> Vec<[u32; 2]> {
     let mut all = Vec::new();
     for ([a, b], pairs) in &scene.excluded.pairs {
         let [a, b] = [a, b].map(|id| starts[id.index()].vertex);
-        all.extend(pairs.iter().map(|&[p, q]| [a + p, b + q]));
+        all.extend(pairs.iter().flat_map(|&[p, q]| [[a + p, b + q], [b + q, a + p]]));
     }
     all.sort_unstable();
     all
@@ -228,7 +228,7 @@ struct Search {
 }
 
 impl Search {
-    /// Returns the vertices from `vertex` on with at most `depth` edges between, itself among them.
+    /// Returns the vertices with at most `depth` edges between, itself among them.
     fn around(&mut self, edges: &Edges, vertex: u32, depth: u32) -> Vec<u32> {
         self.found.clear();
         self.found.push(vertex);
@@ -248,6 +248,6 @@ impl Search {
             }
             begin = end;
         }
-        self.found.iter().copied().filter(|&other| other >= vertex).collect()
+        self.found.clone()
     }
 }

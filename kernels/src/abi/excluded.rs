@@ -31,7 +31,7 @@ arguments! {
     /// What a scene excludes. A table that excludes nothing is empty.
     ExclusionTables {
         /// Pairs of vertices. Word `v` and the next are the range of words that hold the partners
-        /// of vertex `v` which are not smaller, ascending.
+        /// of vertex `v`, ascending. A partner of another has that one as a partner.
         partners: Span<u32>,
         /// All vertices in rest shapes.
         rest: Span<RestPoint>,

@@ -109,14 +109,19 @@ fn listed<L: Lane>(lane: &L, list: Span<u32>, [p, q]: [u32; 2]) -> bool {
 #[inline(always)]
 pub fn is_left_out(p: u32, q: u32, word: impl Fn(u32) -> u32) -> bool {
     let (body, other) = if p < q { (p, q) } else { (q, p) };
-    let (mut low, mut high) = (word(body), word(body + 1));
+    has(other, [word(body), word(body + 1)], word)
+}
+
+/// Whether the words from the first place to before the second, which ascend, have a number.
+#[inline(always)]
+pub fn has(number: u32, [mut low, mut high]: [u32; 2], word: impl Fn(u32) -> u32) -> bool {
     while low < high {
         let middle = low + (high - low) / 2;
         let listed = word(middle);
-        if listed == other {
+        if listed == number {
             return true;
         }
-        if listed < other { low = middle + 1 } else { high = middle }
+        if listed < number { low = middle + 1 } else { high = middle }
     }
     false
 }

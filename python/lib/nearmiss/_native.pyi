@@ -315,8 +315,9 @@ class Scene:
         rest: Array | None = None,
         faces: Array | None = None,
     ) -> None:
-        """Replace the exclusions of a body: pairs of its features that are not tested against each other,
-        and faces that take no part. A feature is a vertex, an edge or a face.
+        """Replace the exclusions of a body: pairs of its features, and faces that take no part.
+
+        A feature is a vertex, an edge or a face.
 
         - `ring`: from 1. A pair of features is left out if a vertex of one and a vertex of the other have
           at most ring - 1 edges between them. Ring 1 has pairs with a common vertex. All queries leave
@@ -325,9 +326,9 @@ class Scene:
         - `rest`: the rest shape, an (n, 3) array. Default: the place of the body, at t = 0.
         - `faces`: indices of faces that take no part, and with them vertices and edges of no other face.
 
-        exclude(body) alone excludes nothing. All queries obey, except
-        Distance, BodyPairs and BodyDistances: these raise InvalidArgumentError if there are exclusions.
-        A removed body loses its exclusions.
+        exclude(body) alone excludes nothing. All queries obey, except Distance, BodyPairs and
+        BodyDistances: these raise InvalidArgumentError if there are exclusions. A removed body loses its
+        exclusions.
 
         Raises InvalidArgumentError for a body or a face that does not exist, a ring of 0, a length that
         is negative or not finite, and a rest shape of another number of vertices. InputError for
@@ -335,12 +336,11 @@ class Scene:
         """
 
     def exclude_pairs(self, body: Key, other: Key, pairs: Array) -> None:
-        """Replace the list of pairs of vertices of two bodies, or of one with itself, of which features are
-        not tested against each other.
+        """Replace the list of pairs of vertices of two bodies whose features are not tested together.
 
-        - `a`, `b`: numbers or names of bodies.
-        - `pairs`: (n, 2) integers: a vertex of a, and one of b. Order and repeats do not matter; [] leaves
-          out none. A pair of features is left out if a vertex of one and a vertex of the other are a pair.
+        - `body`, `other`: numbers or names of bodies; they may be the same.
+        - `pairs`: (n, 2) integers: a vertex of body, and one of other. Order and repeats do not matter; []
+          leaves out none. A pair of features is left out if the list has a vertex of each as a pair.
 
         A body that is removed takes its lists with it.
 

@@ -136,3 +136,26 @@ fn queries_that_cannot_obey_are_refused() {
         assert!(detector.query(&query(kind)).is_ok());
     }
 }
+
+#[test]
+fn several_devices_have_the_same_exclusions() {
+    let scene = crumpled(2, 0);
+    let id = scene.ids().next().expect("a body");
+    let query = Query::near(0.1);
+    let mut one = OneQuery::new(engine(), scene.clone(), query).expect("a detector");
+    let mut several = OneQueryOnSeveral::new(vec![engine(), engine()], scene, query).expect("detectors");
+    let mut counts = Vec::new();
+    for ring in [None, Some(3), None] {
+        let own = Exclusions { ring, ..Exclusions::default() };
+        one.exclude(id, own.clone()).expect("a ring");
+        several.exclude(id, &own).expect("a ring");
+        let pairs: &[[u32; 2]] = if ring.is_some() { &[[0, 5], [1, 7]] } else { &[] };
+        one.exclude_pairs([id, id], pairs).expect("vertices");
+        several.exclude_pairs([id, id], pairs).expect("vertices");
+        let (want, found) = (one.detect().expect("an answer"), several.detect().expect("an answer"));
+        assert_eq!((&want.rows, want.hash()), (&found.rows, found.hash()));
+        counts.push(found.len());
+    }
+    assert!(counts[1] < counts[0] && counts[0] == counts[2], "{counts:?}");
+    assert!(several.exclude_pairs([id, id], &[[0, 0]]).is_err());
+}

@@ -204,6 +204,7 @@ fn what_is_left_out_is_told() {
         of_query.extend(matches!(motion, QueryKind::Discrete | QueryKind::Distance).then_some("edges"));
         of_query.extend((motion == QueryKind::Distance).then_some("pairs within a body"));
         of_query.extend((motion == QueryKind::Earliest).then_some("lists of contacts"));
+        of_query.extend((motion != QueryKind::Distance).then_some("exclusions"));
         for (scene, own) in [
             (&rigid, &["fixed tree", "groups in the walk", "list of pairs in the walk"][..]),
             (&one, &["fixed tree", "poses", "filters of pairs", "placing of vertices"]),

@@ -5,7 +5,7 @@
 //!          itself, once they are measured ([`super::near`]).
 //! Reads    pairs, their vertices, the tables.
 //! Writes   pairs, in no order.
-//! Before   pairs are listed. Ranges of partners ascend.
+//! Before   pairs are listed. Ranges of partners ascend, and each of two partners has the other.
 //! After    kept = {(a, b) in pairs : not excluded(a, b)}. A pair is excluded in three cases.
 //!          (1) Some vertex of a and some vertex of b are partners.
 //!          (2) Both are of one body with a rest shape, and as computed in f64 they are nearer
@@ -13,15 +13,17 @@
 //!          (3) a or b is a face that takes no part.
 //!          Vertices and edges of such faces alone have no owner, so no list has them.
 //! Room     kept: counted past the end, grown, run again.
-//! Cost     8 B pair, 24 B indices. For each of 4 pairs of vertices (vertex/face: 3, triangles: 9)
-//!          8 B of a range, and log2 of the partners reads of 4 B. With a rest shape 128 B of
-//!          vertices, gathered, and some 200 operations of f64; for two triangles 4,000.
+//! Cost     8 B pair, 24 B indices. For each vertex of the first feature 8 B of a range, and 4 B
+//!          for each partner; of more than 32, log2 of them for each vertex of the other. With a
+//!          rest shape 128 B of vertices, gathered. Boxes decide most: 40 operations. The others
+//!          take 200 of f64, two triangles 4,000.
 
 use crate::abi::{ExcludeArgs, ExcludeTrianglesArgs, ExclusionTables, Pair, Span};
-use crate::bvh::filter::{holder, is_left_out};
+use crate::bvh::filter::{has, holder};
 use crate::exec::entries::append_each;
 use crate::exec::{Block, Lane};
-use crate::math::Vec3;
+use crate::math::tolerance::DISTANCE_LISTED;
+use crate::math::{Real, Vec3};
 use crate::prim::near::distance;
 use crate::prim::nearest::Nearest;
 
@@ -53,11 +55,12 @@ pub fn exclude_triangles<B: Block>(block: &mut B, args: &ExcludeTrianglesArgs) {
 pub fn vertex_face<L: Lane>(lane: &L, tables: &ExclusionTables, faces: Span<[u32; 3]>, pair: Pair) -> bool {
     let face = lane.read(faces, pair.b);
     let near = |within: f64| {
-        let corners = [pair.a, face[0], face[1], face[2]].map(|vertex| at_rest(lane, tables, vertex));
-        distance::<f64, true>(corners).0 < within
+        let at = |vertex| at_rest(lane, tables, vertex);
+        let (p, [x, y, z]) = (at(pair.a), face.map(at));
+        !are_apart(&[p], &[x, y, z], within) && distance::<f64, true>([p, x, y, z]).0 < within
     };
     takes_no_part(lane, tables, pair.b)
-        || are_partners(lane, tables, &[pair.a], &face)
+        || has_partner(lane, tables.partners, pair.a, &face)
         || rest_shape(lane, tables, [pair.a, face[0]]).is_some_and(near)
 }
 
@@ -66,10 +69,12 @@ pub fn vertex_face<L: Lane>(lane: &L, tables: &ExclusionTables, faces: Span<[u32
 pub fn edge_edge<L: Lane>(lane: &L, tables: &ExclusionTables, edges: Span<[u32; 2]>, pair: Pair) -> bool {
     let [a, b] = [pair.a, pair.b].map(|edge| lane.read(edges, edge));
     let near = |within: f64| {
-        let ends = [a[0], a[1], b[0], b[1]].map(|vertex| at_rest(lane, tables, vertex));
-        distance::<f64, false>(ends).0 < within
+        let at = |vertex| at_rest(lane, tables, vertex);
+        let ([p, q], [x, y]) = (a.map(at), b.map(at));
+        !are_apart(&[p, q], &[x, y], within) && distance::<f64, false>([p, q, x, y]).0 < within
     };
-    are_partners(lane, tables, &a, &b) || rest_shape(lane, tables, [a[0], b[0]]).is_some_and(near)
+    let has = |vertex| has_partner(lane, tables.partners, vertex, &b);
+    has(a[0]) || has(a[1]) || rest_shape(lane, tables, [a[0], b[0]]).is_some_and(near)
 }
 
 /// Whether two triangles are excluded.
@@ -78,11 +83,14 @@ fn triangles<L: Lane>(lane: &L, tables: &ExclusionTables, faces: Span<[u32; 3]>,
     let [a, b] = [pair.a, pair.b].map(|face| lane.read(faces, face));
     let near = |within: f64| {
         let [p, q] = [a, b].map(|face| face.map(|vertex| at_rest(lane, tables, vertex)));
-        Nearest::meeting(&p, &q).distance < within
+        !are_apart(&p, &q, within) && Nearest::meeting(&p, &q).distance < within
     };
+    let has = |vertex| has_partner(lane, tables.partners, vertex, &b);
     takes_no_part(lane, tables, pair.a)
         || takes_no_part(lane, tables, pair.b)
-        || are_partners(lane, tables, &a, &b)
+        || has(a[0])
+        || has(a[1])
+        || has(a[2])
         || rest_shape(lane, tables, [a[0], b[0]]).is_some_and(near)
 }
 
@@ -92,29 +100,41 @@ fn takes_no_part<L: Lane>(lane: &L, tables: &ExclusionTables, face: u32) -> bool
     !tables.faces.is_empty() && lane.read(tables.faces, face / 32) >> (face % 32) & 1 != 0
 }
 
-/// Whether a vertex of one feature is a partner of one of the other.
+/// Most partners that are compared one by one. A search by halves has branches that a CPU cannot
+/// foresee (measured: `benches/NOTES.md`).
+const FEW: u32 = 32;
+
+/// Whether one of the vertices of a feature is a partner of a vertex.
 #[inline(always)]
-fn are_partners<L: Lane, const M: usize, const N: usize>(
+fn has_partner<L: Lane, const N: usize>(
     lane: &L,
-    tables: &ExclusionTables,
-    a: &[u32; M],
-    b: &[u32; N],
+    partners: Span<u32>,
+    vertex: u32,
+    others: &[u32; N],
 ) -> bool {
-    if tables.partners.is_empty() {
+    if partners.is_empty() {
         return false;
     }
-    let mut i = 0;
-    while i < M {
-        let mut k = 0;
+    let (first, end) = (lane.read(partners, vertex), lane.read(partners, vertex + 1));
+    let (mut found, mut k) = (false, 0);
+    if end - first > FEW {
         while k < N {
-            if is_left_out(a[i], b[k], |word| lane.read(tables.partners, word)) {
-                return true;
-            }
+            found |= has(others[k], [first, end], |word| lane.read(partners, word));
             k += 1;
         }
-        i += 1;
+        return found;
     }
-    false
+    let mut at = first;
+    while at < end {
+        let partner = lane.read(partners, at);
+        k = 0;
+        while k < N {
+            found |= partner == others[k];
+            k += 1;
+        }
+        at += 1;
+    }
+    found
 }
 
 /// The distance of the rest shape that two vertices have in common, if it excludes any pair.
@@ -137,4 +157,27 @@ fn rest_shape<L: Lane>(lane: &L, tables: &ExclusionTables, [p, q]: [u32; 2]) -> 
 #[inline(always)]
 fn at_rest<L: Lane>(lane: &L, tables: &ExclusionTables, vertex: u32) -> Vec3<f64> {
     lane.read(tables.rest, vertex).at
+}
+
+/// Whether the boxes of two features are farther apart than a length, beyond all rounding: then the
+/// computed distance is no less. The true one exceeds the length by more than a computed one errs
+/// ([`crate::prim::near`]).
+#[inline(always)]
+fn are_apart<const M: usize, const N: usize>(a: &[Vec3<f64>; M], b: &[Vec3<f64>; N], length: f64) -> bool {
+    let ([low, high], [from, to]) = (bounds(a), bounds(b));
+    let gaps = (from - high).greater(low - to);
+    let sides = high.greater(to) - low.lesser(from);
+    let largest = |v: Vec3<f64>| v[0].greater(v[1]).greater(v[2]);
+    largest(gaps) > length + DISTANCE_LISTED * (length + largest(sides))
+}
+
+/// The least and the greatest coordinates.
+#[inline(always)]
+fn bounds<const N: usize>(points: &[Vec3<f64>; N]) -> [Vec3<f64>; 2] {
+    let (mut low, mut high, mut i) = (points[0], points[0], 1);
+    while i < N {
+        (low, high) = (low.lesser(points[i]), high.greater(points[i]));
+        i += 1;
+    }
+    [low, high]
 }
