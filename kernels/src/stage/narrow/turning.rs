@@ -19,30 +19,29 @@ use super::{of_edge_edge, of_vertex_face, stride};
 use crate::abi::{Output, Pair, Point, Positions, Span, TurnRecord, TurningArgs, TurningFeaturesArgs};
 use crate::bvh::turns::body_of;
 use crate::exec::{Block, Lane};
-use crate::math::{Vec3, pick, rigid};
+use crate::math::{Vec3, rigid};
 use crate::prim::balls::stay_apart;
+use crate::prim::turning::apart::{open, turn_far};
 use crate::prim::turning::{Side, edge_edge, vertex_face};
 
 /// The tests that the triangles of each pair own, unless the triangles or the features stay apart.
 pub fn features<B: Block>(block: &mut B, args: &TurningFeaturesArgs) {
     each(block, args.pairs, |lane, pair| {
         let facet = |triangle| lane.read(args.facets, triangle);
+        let pair = in_order(lane, args, pair);
         let (p, q) = (facet(pair.a), facet(pair.b));
-        let mut mask = owned(&p, &q);
-        if mask == 0 {
+        let tests = owned(&p, &q);
+        if tests == 0 {
             return;
         }
-        let [a, b] = sides(lane, (&args.frames, args.rest), [&p.corners, &q.corners]);
-        if stay_apart(&a, &b, args.gap) {
+        let [a, b] = sides(lane, (&args.frames, args.rest), &p.corners, &q.corners);
+        if turn_far(&a, &b) && stay_apart(&a, &b, args.gap) {
             return;
         }
-        while mask != 0 {
-            let test = mask.trailing_zeros();
-            mask &= mask - 1;
-            let (of_a, of_b) = parts(&a, &b, test);
-            if stay_apart(&of_a, &of_b, args.gap) {
-                continue;
-            }
+        let mut open = open(&a, &b, args.gap, tests);
+        while open != 0 {
+            let test = open.trailing_zeros();
+            open &= open - 1;
             if VERTICES >> test & 1 == 1 {
                 args.vf.push(lane, vertex_and_face(facet, pair, test));
             } else {
@@ -50,6 +49,19 @@ pub fn features<B: Block>(block: &mut B, args: &TurningFeaturesArgs) {
             }
         }
     });
+}
+
+/// The pair with the triangle that turns more first, or the one with the smaller number if both
+/// turn alike. In any order the same is proven, but up to the last bits, and with them what is left.
+#[inline(always)]
+fn in_order<L: Lane>(lane: &L, args: &TurningFeaturesArgs, pair: Pair) -> Pair {
+    let square = |triangle| {
+        let body = body_of(lane, args.frames.turns, lane.read(args.facets, triangle).corners[0]);
+        body.map_or(0.0, |body| Vec3(body.turn).dot(Vec3(body.turn)))
+    };
+    let (a, b) = (square(pair.a), square(pair.b));
+    let is_first = a > b || (a == b && pair.a < pair.b);
+    if is_first { pair } else { Pair { a: pair.b, b: pair.a } }
 }
 
 /// Runs `body` for each pair of a list, a lane each, in a grid of any size.
@@ -67,39 +79,19 @@ fn each<B: Block>(block: &mut B, pairs: Output<Pair>, mut body: impl FnMut(&B::L
     });
 }
 
-/// The features of a test, see [`owned`], each as three points: a vertex thrice, or the ends of an
-/// edge and the middle between them.
-#[inline(always)]
-fn parts(a: &Side, b: &Side, test: u32) -> (Side, Side) {
-    let vertex = |side: &Side, k: u32| Side { points: [pick(side.points, k); 3], ..*side };
-    let edge = |side: &Side, k: u32| {
-        let [x, y, z] = side.points;
-        let ends = [pick([x, y, z], k), pick([y, z, x], k)];
-        let middle = [0, 1].map(|end| (ends[0][end] + ends[1][end]) * 0.5);
-        Side { points: [ends[0], ends[1], middle], ..*side }
-    };
-    if test < 3 {
-        (vertex(a, test), *b)
-    } else if test < 6 {
-        (*a, vertex(b, test - 3))
-    } else {
-        (edge(a, (test - 6) / 3), edge(b, (test - 6) % 3))
-    }
-}
-
 /// The contacts of both kinds.
 pub fn solve<B: Block>(block: &mut B, args: &TurningArgs) {
     let rung = &args.rung;
     let places = (&rung.frames, args.rest);
     each(block, rung.vf.pairs, |lane, pair| {
         let face = lane.read(rung.faces, pair.b);
-        let [v, f] = sides(lane, places, [&[pair.a], &face]);
+        let [v, f] = sides(lane, places, &[pair.a], &face);
         let verdict = vertex_face(&v, &f, &of_vertex_face(lane, rung, pair));
         emit(lane, rung, &rung.vf, pair, verdict);
     });
     each(block, rung.ee.pairs, |lane, pair| {
         let ends = [pair.a, pair.b].map(|edge| lane.read(rung.edges, edge));
-        let [a, b] = sides(lane, places, [&ends[0], &ends[1]]);
+        let [a, b] = sides(lane, places, &ends[0], &ends[1]);
         let verdict = edge_edge(&a, &b, &of_edge_edge(lane, rung, pair));
         emit(lane, rung, &rung.ee, pair, verdict);
     });
@@ -108,28 +100,38 @@ pub fn solve<B: Block>(block: &mut B, args: &TurningArgs) {
 /// The motions of two features, each of one body. Vertices that do not turn are seen from the
 /// pivot of the others, so that nothing far from the origin is rounded but their difference.
 #[inline(always)]
-fn sides<L: Lane>(
+fn sides<L: Lane, const P: usize, const Q: usize>(
+    lane: &L,
+    places: (&Positions<f64>, Span<Point<f64>>),
+    p: &[u32; P],
+    q: &[u32; Q],
+) -> [Side; 2] {
+    let turns = places.0.turns;
+    let (a, b) = (body_of(lane, turns, p[0]), body_of(lane, turns, q[0]));
+    [side(lane, places, p, (&a, &b)), side(lane, places, q, (&b, &a))]
+}
+
+/// The motion of a feature of a body that turns, or of another one against a body that does.
+#[inline(always)]
+fn side<L: Lane, const N: usize>(
     lane: &L,
     (frames, rest): (&Positions<f64>, Span<Point<f64>>),
-    features: [&[u32]; 2],
-) -> [Side; 2] {
-    let bodies = features.map(|vertices| body_of(lane, frames.turns, vertices[0]));
-    [0, 1].map(|i| {
-        let others = bodies[1 - i].unwrap_or_default();
-        let mut points = [[Vec3([0.0; 3]); 2]; 3];
-        let Some(own) = bodies[i] else {
-            let pivot = others.path.map(Vec3);
-            for (point, &vertex) in points.iter_mut().zip(features[i]) {
-                let ends = lane.read(frames.moving, vertex);
-                *point = [ends.t0.at - pivot[0], ends.t1.at - pivot[1]];
-            }
-            return Side { phi: Vec3([0.0; 3]), pivot, points };
-        };
-        for (point, &vertex) in points.iter_mut().zip(features[i]) {
-            *point = [turned(&own, lane.read(rest, own.rest + (vertex - own.vertex)).at); 2];
+    vertices: &[u32; N],
+    (own, other): (&Option<TurnRecord>, &Option<TurnRecord>),
+) -> Side {
+    let mut points = [[Vec3([0.0; 3]); 2]; 3];
+    let Some(own) = own else {
+        let pivot = other.map_or([Vec3([0.0; 3]); 2], |other| other.path.map(Vec3));
+        for k in 0..N {
+            let ends = lane.read(frames.moving, vertices[k]);
+            points[k] = [ends.t0.at - pivot[0], ends.t1.at - pivot[1]];
         }
-        Side { phi: Vec3(own.turn), pivot: own.path.map(Vec3), points }
-    })
+        return Side { phi: Vec3([0.0; 3]), pivot, points };
+    };
+    for k in 0..N {
+        points[k] = [turned(own, lane.read(rest, own.rest + (vertices[k] - own.vertex)).at); 2];
+    }
+    Side { phi: Vec3(own.turn), pivot: own.path.map(Vec3), points }
 }
 
 /// A point of a mesh from the pivot, turned as at the start of the step.
