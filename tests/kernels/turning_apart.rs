@@ -3,7 +3,7 @@
 
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::turning::Side;
-use nearmiss_kernels::prim::turning::apart::{Needed, open, open_by, turn_far};
+use nearmiss_kernels::prim::turning::apart::{Course, Needed, open, open_by};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
@@ -44,16 +44,16 @@ fn side((phi, pivot, way): Body, points: [Whole; 3]) -> Side {
 /// on the face of the second, test 0, or both first edges, test 6. Half of the bodies turn together: these touch
 /// throughout.
 fn touching(r: &mut SmallRng, i: usize) -> ([Side; 2], u32) {
-    let far = [10, 1 << 20, 1 << 30][i % 3];
-    let (b, shift) = ([0; 3].map(|_| any(r, 1 << 17).map(|x| 8 * x)), any(r, far));
+    let (far, size) = [(10, 1 << 20), (1 << 20, 1 << 20), (1 << 30, 1 << 20)][i % 3];
+    let (b, shift) = ([0; 3].map(|_| any(r, size / 8).map(|x| 8 * x)), any(r, far));
     let (points, test) = if i / 2 % 2 == 0 {
         let weights = [[4, 2, 2], [4, 4, 0], [6, 1, 1], [3, 3, 2], [8, 0, 0]][r.random_range(0..5)];
         let at = [0, 1, 2].map(|k| (0..3).map(|j| weights[j] * b[j][k]).sum::<i64>() / 8);
-        ([at, plus(at, any(r, 1 << 20)), plus(at, any(r, 1 << 20))], 0)
+        ([at, plus(at, any(r, size)), plus(at, any(r, size))], 0)
     } else {
         let middle = [0, 1, 2].map(|k| (b[0][k] + b[1][k]) / 2);
-        let half = any(r, 1 << 20);
-        ([plus(middle, half), less(middle, half), any(r, 1 << 20)], 6)
+        let half = any(r, size);
+        ([plus(middle, half), less(middle, half), any(r, size)], 6)
     };
     let of_b = body(r, far);
     let of_a = if i % 2 == 0 { of_b } else { body(r, far) };
@@ -82,9 +82,23 @@ fn features_that_touch_at_the_start_are_left() {
 }
 
 #[test]
-fn a_filter_without_its_error_is_noticed() {
-    let lost = left_out(&Needed { error: 0.0, ..Needed::ALL });
+fn a_filter_of_exact_heights_is_noticed() {
+    let lost = left_out(&Needed { height: 0.0, ..Needed::ALL });
     assert!(lost > 100, "{lost}");
+}
+
+/// Features far from their pivots: two errors of a place, `512u` of the sum of both distances, are 4.
+#[test]
+fn the_error_of_places_is_counted() {
+    let flat = |z: f64| {
+        let corner = |x: f64, y: f64| [Vec3([2f64.powi(45) + x, y, z]); 2];
+        let points = [corner(0.0, 0.0), corner(3.0, 0.0), corner(0.0, 3.0)];
+        Side { phi: Vec3([0.0, 0.0, 0.15]), pivot: [Vec3([0.0; 3]); 2], points }
+    };
+    let (a, b) = (flat(0.0), flat(3.8));
+    assert_eq!(open(&a, &b, 0.0, TESTS), TESTS);
+    assert_eq!(open_by(&a, &b, 0.0, TESTS, &Needed { place: 0.9, ..Needed::ALL }), 0);
+    assert_eq!(open(&a, &flat(4.2), 0.0, TESTS), 0);
 }
 
 /// A triangle about a point, in a body that turns about the origin.
@@ -114,7 +128,12 @@ fn the_gap_is_sharp() {
         assert_eq!(open(&a, &b, 1.01, 0), 0);
         assert_eq!(open(&a, &b, f64::INFINITY, 0b101), 0b101);
         assert_eq!(open(&a, &b, f64::NAN, 0b101), 0b101);
-        assert_eq!(turn_far(&a, &b), angle > 0.4);
+        let course = Course::new(&a, &b).expect("usual numbers");
+        assert_eq!(course.turns_far(), angle > 0.4);
+        // A quick look leaves all to the other, or nothing.
+        assert!(!course.are_apart(1.01, TESTS));
+        assert_eq!(course.open_in_halves(1.01, TESTS), open(&a, &b, 1.01, TESTS));
+        assert!(angle > 0.1 || course.are_apart(0.9, TESTS));
     }
 }
 

@@ -2,8 +2,8 @@
 //! once, without the walk through the step of each ([`super::solve`]).
 //!
 //! The frame is that of the second side, the one that turns less: it turns with it, about its pivot.
-//! In it the corners `b` of that side move linearly, or not at all. The corners `y` of the other side leave
-//! their chords in a window of time by at most `D = A h^2 / 8`, where `h` is the length of the
+//! In it the corners `b` of that side move linearly, or not at all. The corners `y` of the other side
+//! leave their chords in a window of time by at most `D = A h^2 / 8`, where `h` is the length of the
 //! window and `A` bounds the second derivative of these three corners ([`super::rates`]).
 //!
 //! # What separates
@@ -27,20 +27,28 @@
 //!
 //! # Roundings
 //!
-//! `E` is [`TURNING_CURVE`] times [`TURNING_PLACE`], `512u`, of the reach. In this, `214u` are those
-//! of a corner and of what is given, as derived there. A height has `3u` of the length of its
-//! corner, and the lengths of both are at most the reach together; their difference has `2u`. What
-//! is needed errs by `8u` of itself, below [`TURN_UP`]. The rest, `290u` of the reach, exceeds what
-//! underflow loses: the reach is at least 2^-200 and a direction 2^-400 long, so the rest is above
-//! 2^-645, a lost product below 2^-1070, and a lost square of a turn below 2^-1020. At most 2^200
-//! keeps all products finite. Otherwise, and of NaN, nothing is known, and all tests stay.
+//! Places are computed in f64. In units in which the reach is in [1, 2), differences from one of the
+//! corners are rounded to f32, and heights are of f32. `E` has two parts.
+//!
+//! - [`TURNING_CURVE`] times [`TURNING_PLACE`], `512u` of f64, of the reach. In this, `214u` are those
+//!   of a corner and of what is given, as derived there, and a difference has `2u` for either.
+//! - [`TURNING_SINGLE`], `16u` of f32, of the longest difference. Roundings of both corners are `2u`,
+//!   heights of three products and two sums `6u`, and their difference `2u`.
+//!
+//! What is needed errs by `7u` of itself, below [`TURNING_SINGLE_UP`]. The rest of the first part,
+//! `290u` of f64, exceeds what underflow loses. A direction is at least 2^-60 long, so the rest is
+//! above 2^-105, and the lost products together are below 2^-146. Squares of turns lose 2^-1020.
+//! The reach is from 2^-200 to 2^200: then all is finite. Otherwise, and of NaN, nothing is known,
+//! and all tests stay.
 
+use super::Side;
 use super::motion::mix;
 use super::rates::Rates;
-use super::{Side, length};
-use crate::math::tolerance::turning::{TURN_MOST, TURN_UP, TURNING_CURVE, TURNING_FAINT, TURNING_PLACE};
+use crate::math::tolerance::turning::{
+    TURN_MOST, TURN_UP, TURNING_CURVE, TURNING_PLACE, TURNING_SINGLE, TURNING_SINGLE_FAINT, TURNING_SINGLE_UP,
+};
 use crate::math::turn::Turn;
-use crate::math::{Real, Vec3, pick};
+use crate::math::{Real, Vec3, pick, round};
 
 /// The most that both bodies turn in a first window, together. Radians; a cost, proves nothing.
 const TURN: f64 = 0.4;
@@ -58,30 +66,34 @@ const MOST: f64 = f64::from_bits((1023 + 200) << 52);
 pub struct Needed {
     /// Of the distance from the chord.
     pub deviation: f64,
-    /// Of the error.
-    pub error: f64,
+    /// Of the error of places.
+    pub place: f64,
+    /// Of the error of heights.
+    pub height: f32,
     /// Of the gap.
     pub gap: f64,
 }
 
 impl Needed {
     /// All of everything.
-    pub const ALL: Needed = Needed { deviation: 1.0, error: 1.0, gap: 1.0 };
+    pub const ALL: Needed = Needed { deviation: 1.0, place: 1.0, height: 1.0, gap: 1.0 };
 }
 
-/// The corners at a time.
+/// The corners at a time: differences from the origin of the heights.
 #[derive(Clone, Copy)]
 struct Corners {
     /// Those of the side that turns in the frame.
-    y: [Vec3<f64>; 3],
+    y: [Vec3<f32>; 3],
     /// Those of the frame's own side.
-    b: [Vec3<f64>; 3],
-    /// The farthest `y` from the origin of the frame.
+    b: [Vec3<f32>; 3],
+    /// The square of the longest of all.
+    longest: f32,
+    /// The farthest `y` from the second side's pivot, not scaled.
     far: f64,
 }
 
 /// The motion of two triangles in the frame of the second.
-struct Course {
+pub struct Course {
     turns: [Turn; 2],
     /// The first side's pivot less the second's, at both ends of the step.
     pivot: [Vec3<f64>; 2],
@@ -90,12 +102,16 @@ struct Course {
     rates: Rates,
     reach: f64,
     error: f64,
+    /// One unit of the input in units of heights.
+    scale: f64,
+    /// First windows: a power of two, 32 at most.
+    first: u32,
 }
 
 impl Course {
     /// `None` if nothing is known of numbers that large or that small.
     #[inline(always)]
-    fn new(a: &Side, b: &Side) -> Option<Self> {
+    pub fn new(a: &Side, b: &Side) -> Option<Self> {
         let pivot = [a.pivot[0] - b.pivot[0], a.pivot[1] - b.pivot[1]];
         let (mut sum, mut far, mut far_a, mut far_b) = (0.0, 0.0, 0.0, 0.0);
         let mut consider = |x: Vec3<f64>, most: &mut f64| {
@@ -111,20 +127,26 @@ impl Course {
         }
         let reach = (far.sqrt() + far_a.sqrt() + far_b.sqrt()) * TURN_UP;
         let turns = [Turn::new(a.phi), Turn::new(b.phi)];
-        let turn = turns[0].angle() <= TURN_MOST && turns[1].angle() <= TURN_MOST;
-        if !(turn && sum <= MOST && reach >= LEAST) {
+        let (wa, wb) = (turns[0].angle(), turns[1].angle());
+        if !(wa <= TURN_MOST && wb <= TURN_MOST && sum <= MOST && reach >= LEAST) {
             return None;
         }
+        let mut first = 1;
+        while wa + wb > TURN * first as f64 && first < 32 {
+            first *= 2;
+        }
+        let parts = reach.parts();
+        let scale = f64::pow2(-(parts.exponent + 63 - parts.mantissa.leading_zeros() as i32));
         let rates = Rates::of(a.phi, b.phi, &pivot, &a.points, &b.points);
         let error = TURNING_PLACE * reach;
-        Some(Course { turns, pivot, a: a.points, b: b.points, rates, reach, error })
+        Some(Course { turns, pivot, a: a.points, b: b.points, rates, reach, error, scale, first })
     }
 
-    /// The corners at the start of the step.
+    /// Whether both bodies turn so far that there are several first windows: then balls, which no
+    /// turn flattens, leave out most for less ([`crate::prim::balls`]).
     #[inline(always)]
-    fn start(&self) -> Corners {
-        let corner = |k: usize| self.pivot[0] + self.a[k][0];
-        Corners::of([corner(0), corner(1), corner(2)], [self.b[0][0], self.b[1][0], self.b[2][0]])
+    pub fn turns_far(&self) -> bool {
+        self.first > 1
     }
 
     /// The corners at a time.
@@ -134,25 +156,41 @@ impl Course {
         let pivot = mix(&self.pivot, t);
         let y = |k: usize| frame.back(pivot + turn.on(mix(&self.a[k], t)));
         let b = |k: usize| mix(&self.b[k], t);
-        Corners::of([y(0), y(1), y(2)], [b(0), b(1), b(2)])
+        self.corners([y(0), y(1), y(2)], [b(0), b(1), b(2)])
     }
 
-    /// How far a corner may be from its computed chord in a window of length `h`: see
-    /// `Motion::bounds`.
+    /// The corners at the start.
     #[inline(always)]
-    fn leaves(&self, from: &Corners, to: &Corners, h: f64, needed: &Needed) -> f64 {
+    fn start(&self) -> Corners {
+        let y = |k: usize| self.pivot[0] + self.a[k][0];
+        self.corners([y(0), y(1), y(2)], [self.b[0][0], self.b[1][0], self.b[2][0]])
+    }
+
+    #[inline(always)]
+    fn corners(&self, y: [Vec3<f64>; 3], b: [Vec3<f64>; 3]) -> Corners {
+        let square = |k: usize| y[k].dot(y[k]);
+        let far = square(0).max(square(1)).max(square(2)).sqrt();
+        let origin = self.b[0][0];
+        let single = |x: Vec3<f64>| ((x - origin) * self.scale).narrow();
+        let (y, b) = ([single(y[0]), single(y[1]), single(y[2])], [single(b[0]), single(b[1]), single(b[2])]);
+        let mut longest = 0.0;
+        for k in 0..3 {
+            longest = y[k].dot(y[k]).greater(b[k].dot(b[k])).greater(longest);
+        }
+        Corners { y, b, longest, far }
+    }
+
+    /// A window of length `h`, and what heights in it must exceed: `D + E + gap`.
+    #[inline(always)]
+    fn window(&self, from: Corners, to: Corners, h: f64, (gap, needed): (f64, &Needed)) -> Window {
+        // As in `Motion::bounds`.
         let far = from.far.max(to.far) * TURN_UP + self.error;
         let far = (far + self.rates.first.within(self.reach) * (0.5 * h)) * TURN_UP;
         let deviation = self.rates.second.within(far) * (0.125 * h * h);
-        needed.deviation * deviation + needed.error * (TURNING_CURVE * self.error)
-    }
-}
-
-impl Corners {
-    #[inline(always)]
-    fn of(y: [Vec3<f64>; 3], b: [Vec3<f64>; 3]) -> Self {
-        let square = |k: usize| y[k].dot(y[k]);
-        Corners { y, b, far: square(0).max(square(1)).max(square(2)).sqrt() }
+        let place = needed.place * (TURNING_CURVE * self.error);
+        let needs = (needed.deviation * deviation + place + needed.gap * gap) * TURN_UP;
+        let single = needed.height * TURNING_SINGLE * from.longest.greater(to.longest).sqrt();
+        Window { needs: round::up(needs * self.scale) + single, from, to }
     }
 }
 
@@ -169,50 +207,40 @@ fn parted(signs: u32) -> u32 {
     vertices_of_first | vertices_of_second << 3 | edges << 6
 }
 
-/// A window's corners at both ends, and twice their edges in its middle.
+/// A window: the corners at both ends.
 struct Window {
     from: Corners,
     to: Corners,
     /// What a height must exceed, for a direction of length 1.
-    needs: f64,
-    sides: [[Vec3<f64>; 3]; 2],
+    needs: f32,
 }
 
 impl Window {
+    /// The direction with a number below [`ALL`], in the middle of the window.
     #[inline(always)]
-    fn new(from: Corners, to: Corners, needs: f64) -> Self {
-        let edges = |from: &[Vec3<f64>; 3], to: &[Vec3<f64>; 3]| {
-            let [x, y, z] = [from[0] + to[0], from[1] + to[1], from[2] + to[2]];
-            [y - x, z - y, x - z]
-        };
-        let sides = [edges(&from.y, &to.y), edges(&from.b, &to.b)];
-        Window { from, to, needs, sides }
-    }
-
-    /// The direction with a number below [`ALL`].
-    #[inline(always)]
-    fn direction(&self, k: u32) -> Vec3<f64> {
-        let [y, b] = &self.sides;
+    fn direction(&self, k: u32) -> Vec3<f32> {
+        let twice = |x: [Vec3<f32>; 3], y: [Vec3<f32>; 3]| [x[0] + y[0], x[1] + y[1], x[2] + y[2]];
+        let (y, b) = (twice(self.from.y, self.to.y), twice(self.from.b, self.to.b));
         if k == 0 {
-            let sum = |x: &[Vec3<f64>; 3]| x[0] + x[1] + x[2];
-            (sum(&self.from.y) - sum(&self.from.b)) + (sum(&self.to.y) - sum(&self.to.b))
-        } else {
-            // Normals are products of two edges of one side.
-            let (i, j) = if k < FEW { (0, 1) } else { ((k - FEW) / 3, (k - FEW) % 3) };
-            let first = if k == 1 { b[0] } else { pick(*y, i) };
-            let second = if k == 2 { y[1] } else { pick(*b, j) };
-            first.cross(second)
+            return (y[0] + y[1] + y[2]) - (b[0] + b[1] + b[2]);
         }
+        let edges = |[x, y, z]: [Vec3<f32>; 3]| [y - x, z - y, x - z];
+        let (y, b) = (edges(y), edges(b));
+        // Normals are products of two edges of one side.
+        let (i, j) = if k < FEW { (0, 1) } else { ((k - FEW) / 3, (k - FEW) % 3) };
+        let first = if k == 1 { b[0] } else { pick(y, i) };
+        let second = if k == 2 { y[1] } else { pick(b, j) };
+        first.cross(second)
     }
 
     /// The tests that a direction shows to be apart in the window.
     #[inline(always)]
-    fn parted(&self, n: Vec3<f64>) -> u32 {
-        let long = length(n);
-        let needs = if long > TURNING_FAINT { long * self.needs * TURN_UP } else { f64::INFINITY };
-        let heights = |x: &[Vec3<f64>; 3]| [n.dot(x[0]), n.dot(x[1]), n.dot(x[2])];
-        let (y, b) =
-            ([heights(&self.from.y), heights(&self.to.y)], [heights(&self.from.b), heights(&self.to.b)]);
+    fn parted(&self, n: Vec3<f32>) -> u32 {
+        let long = n.dot(n).sqrt();
+        let needs = long * self.needs * TURNING_SINGLE_UP;
+        let needs = if long > TURNING_SINGLE_FAINT { needs } else { f32::INFINITY };
+        let heights = |x: &[Vec3<f32>; 3]| [n.dot(x[0]), n.dot(x[1]), n.dot(x[2])];
+        let (y, b) = ([&self.from.y, &self.to.y].map(heights), [&self.from.b, &self.to.b].map(heights));
         let (mut above, mut below) = (0, 0);
         for i in 0..3 {
             for j in 0..3 {
@@ -223,64 +251,57 @@ impl Window {
         }
         parted(above) | parted(below)
     }
-}
 
-/// The number of first windows: a power of two, 32 at most.
-#[inline(always)]
-fn first_windows(a: &Side, b: &Side) -> u32 {
-    let turn = length(a.phi) + length(b.phi);
-    let mut windows = 1;
-    while turn > TURN * windows as f64 && windows < 32 {
-        windows *= 2;
-    }
-    windows
-}
-
-/// Whether two bodies turn so far in a step that it has several first windows: then balls, which no
-/// turn flattens, leave out most for less ([`crate::prim::balls`]).
-#[inline(always)]
-pub fn turn_far(a: &Side, b: &Side) -> bool {
-    first_windows(a, b) > 1
-}
-
-/// Those of the `tests` of two triangles, as bits of `owned`, whose features do not certainly stay
-/// farther apart than `gap`. Points of the sides are the corners. Any order of the sides is right;
-/// most is left out if the second turns less.
-#[inline(always)]
-pub fn open(a: &Side, b: &Side, gap: f64, tests: u32) -> u32 {
-    open_by(a, b, gap, tests, &Needed::ALL)
-}
-
-/// [`open`], with less than is needed: for tests, which show that it is needed.
-#[inline(always)]
-pub fn open_by(a: &Side, b: &Side, gap: f64, tests: u32, needed: &Needed) -> u32 {
-    match Course::new(a, b) {
-        Some(course) => course.open(gap, tests, first_windows(a, b), needed),
-        None => tests,
+    /// Those of the tests that the first directions leave.
+    #[inline(always)]
+    fn open(&self, tests: u32, directions: u32) -> u32 {
+        let (mut open, mut k) = (tests, 0);
+        while k < directions && open != 0 {
+            open &= !self.parted(self.direction(k));
+            k += 1;
+        }
+        open
     }
 }
 
 impl Course {
-    /// The tests that are not apart in each window.
+    /// Whether no test is left by the first directions in the first window, if that is the step. Then
+    /// [`Course::open`] leaves none.
     #[inline(always)]
-    fn open(&self, gap: f64, tests: u32, first: u32, needed: &Needed) -> u32 {
-        let count = SHORTEST * first;
+    pub fn are_apart(&self, gap: f64, tests: u32) -> bool {
+        if self.turns_far() {
+            return false;
+        }
+        self.window(self.start(), self.at(1.0), 1.0, (gap, &Needed::ALL)).open(tests, FEW) == 0
+    }
+
+    /// Those of the `tests` of two triangles, as bits of `owned`, whose features do not certainly
+    /// stay farther apart than `gap`.
+    #[inline(always)]
+    pub fn open(&self, gap: f64, tests: u32) -> u32 {
+        self.open_by(gap, tests, SHORTEST, &Needed::ALL)
+    }
+
+    /// The same, if the first window leaves a test by its first directions.
+    #[inline(always)]
+    pub fn open_in_halves(&self, gap: f64, tests: u32) -> u32 {
+        self.open_by(gap, tests, if self.turns_far() { SHORTEST } else { SHORTEST / 2 }, &Needed::ALL)
+    }
+
+    /// [`Course::open`], beginning with a window of `size` shortest ones, with less than is needed:
+    /// tests show that it is needed.
+    #[inline(always)]
+    pub fn open_by(&self, gap: f64, tests: u32, size: u32, needed: &Needed) -> u32 {
+        let count = SHORTEST * self.first;
         let unit = 1.0 / count as f64;
         let (mut tests, mut left) = (tests, 0);
         let mut from = self.start();
         // The window, in units of the shortest.
-        let (mut begin, mut size) = (0, SHORTEST);
+        let (mut begin, mut size) = (0, size);
         loop {
             let to = self.at((begin + size) as f64 * unit);
-            let needs = self.leaves(&from, &to, size as f64 * unit, needed) + needed.gap * gap;
-            let window = Window::new(from, to, needs);
-            let mut open = tests;
-            let mut k = 0;
-            let directions = if size == 1 { ALL } else { FEW };
-            while k < directions && open != 0 {
-                open &= !window.parted(window.direction(k));
-                k += 1;
-            }
+            let window = self.window(from, to, size as f64 * unit, (gap, needed));
+            let open = window.open(tests, if size == 1 { ALL } else { FEW });
             if open != 0 && size > 1 {
                 size /= 2;
                 continue;
@@ -297,6 +318,19 @@ impl Course {
             from = to;
         }
     }
+}
+
+/// [`Course::open`] of two triangles. Points of the sides are the corners. Any order of the sides is
+/// right; most is left out if the second turns less. All tests, if nothing is known.
+#[inline(always)]
+pub fn open(a: &Side, b: &Side, gap: f64, tests: u32) -> u32 {
+    open_by(a, b, gap, tests, &Needed::ALL)
+}
+
+/// [`open`], with less than is needed: for tests, which show that it is needed.
+#[inline(always)]
+pub fn open_by(a: &Side, b: &Side, gap: f64, tests: u32, needed: &Needed) -> u32 {
+    Course::new(a, b).map_or(tests, |course| course.open_by(gap, tests, SHORTEST, needed))
 }
 
 #[cfg(test)]

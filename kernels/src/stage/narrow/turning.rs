@@ -1,54 +1,102 @@
 //! # Turning: pairs of triangles of bodies that turn → proven contacts
 //! Paper    not in the paper. The motion is that of FCL's and parry's interpolations; the proof is
 //!          [`crate::prim::turning`].
-//! Launch   [`features()`] over the pairs, which leaves out triangles and features in balls that
-//!          stay apart; then [`solve`] over its lists, both kinds in one launch. A lane a pair; a
-//!          grid of any size strides. Only in a step in which a body may turn.
+//! Launch   [`features()`] over the pairs, a warp a block, which leaves out features that planes
+//!          keep apart ([`crate::prim::turning::apart`]), and of bodies that turn far triangles in
+//!          balls that stay apart; then [`solve`] over its lists, both kinds in one launch. A lane a
+//!          pair; a grid of any size strides. Only in a step in which a body may turn.
 //! Reads    pairs, their features, bodies that turn, points at rest and vertices; tolerances of
 //!          bodies, if they differ.
 //! Writes   contacts and undecided pairs with bounds of toi; or the earliest.
 //! Before   pairs are complete: volumes hold the paths, and all within a tolerance of them.
 //! After    {pairs that meet on their true paths} ⊆ listed; no time is late.
 //! Room     pairs, hits: counted past the end, grown, run again.
-//! Cost     8 B pair, 160 B each of two bodies and 24 B a vertex (gathered). About 15 slices a pair,
-//!          each 40 ns on a CPU.
+//! Cost     8 B pair, 160 B each of two bodies and 24 B a vertex (gathered). A pair of triangles
+//!          takes some 1,500 operations, half of them in f32; those that one window does not decide
+//!          take them again, and three times as many. About 6 slices and 17 places a pair of
+//!          features.
 
 use super::climb::emit;
 use super::features::{VERTICES, owned, two_edges, vertex_and_face};
 use super::{of_edge_edge, of_vertex_face, stride};
 use crate::abi::{Output, Pair, Point, Positions, Span, TurnRecord, TurningArgs, TurningFeaturesArgs};
 use crate::bvh::turns::body_of;
-use crate::exec::{Block, Lane};
+use crate::exec::{Block, Lane, WARP};
 use crate::math::{Vec3, rigid};
 use crate::prim::balls::stay_apart;
-use crate::prim::turning::apart::{open, turn_far};
+use crate::prim::turning::apart::Course;
 use crate::prim::turning::{Side, edge_edge, vertex_face};
+use crate::queue::waiting::{Waiting, waiting_bytes};
+
+/// Lanes of a block of [`features()`]: one warp.
+pub const LANES: u32 = WARP;
+/// Bytes of shared memory of a block of [`features()`]: pairs that wait.
+pub const SHARED: u32 = waiting_bytes(LANES);
 
 /// The tests that the triangles of each pair own, unless the triangles or the features stay apart.
+/// Most pairs end in one window of the whole step. The others wait on chip until there is one a lane.
 pub fn features<B: Block>(block: &mut B, args: &TurningFeaturesArgs) {
-    each(block, args.pairs, |lane, pair| {
-        let facet = |triangle| lane.read(args.facets, triangle);
-        let pair = in_order(lane, args, pair);
-        let (p, q) = (facet(pair.a), facet(pair.b));
-        let tests = owned(&p, &q);
-        if tests == 0 {
-            return;
+    let (count, lanes) = (args.pairs.listed(block), block.lanes());
+    let share = block.share(count, lanes);
+    let mut waiting = Waiting::new(block);
+    let mut base = share.first;
+    loop {
+        let is_end = base >= share.end;
+        block.phase(|lane| {
+            let i = base + lane.lane();
+            let pair = (!is_end && i < count).then(|| in_order(lane, args, args.pairs.get(lane, i)));
+            waiting.set(lane, pair.filter(|&pair| may_meet(lane, args, pair)));
+        });
+        waiting.add(block);
+        let (from, some) = waiting.take(block, is_end);
+        if some > 0 {
+            block.phase(|lane| {
+                if lane.lane() < some {
+                    list(lane, args, waiting.get(lane, from + lane.lane()));
+                }
+                lane.meet();
+            });
         }
-        let [a, b] = sides(lane, (&args.frames, args.rest), &p.corners, &q.corners);
-        if turn_far(&a, &b) && stay_apart(&a, &b, args.gap) {
-            return;
+        if is_end & waiting.is_empty() {
+            break;
         }
-        let mut open = open(&a, &b, args.gap, tests);
-        while open != 0 {
-            let test = open.trailing_zeros();
-            open &= open - 1;
-            if VERTICES >> test & 1 == 1 {
-                args.vf.push(lane, vertex_and_face(facet, pair, test));
-            } else {
-                args.ee.push(lane, two_edges(facet, pair, test - 6));
-            }
+        base = if is_end { base } else { base + share.step };
+    }
+}
+
+/// Whether a pair owns a test, and its triangles do not stay apart for a reason that is quickly found.
+#[inline(always)]
+fn may_meet<L: Lane>(lane: &L, args: &TurningFeaturesArgs, pair: Pair) -> bool {
+    let [p, q] = [pair.a, pair.b].map(|triangle| lane.read(args.facets, triangle));
+    let tests = owned(&p, &q);
+    if tests == 0 {
+        return false;
+    }
+    let [a, b] = sides(lane, (&args.frames, args.rest), &p.corners, &q.corners);
+    match Course::new(&a, &b) {
+        Some(course) if course.turns_far() => !stay_apart(&a, &b, args.gap),
+        Some(course) => !course.are_apart(args.gap, tests),
+        None => true,
+    }
+}
+
+/// Lists those tests of a pair whose features may meet.
+#[inline(always)]
+fn list<L: Lane>(lane: &L, args: &TurningFeaturesArgs, pair: Pair) {
+    let facet = |triangle| lane.read(args.facets, triangle);
+    let (p, q) = (facet(pair.a), facet(pair.b));
+    let [a, b] = sides(lane, (&args.frames, args.rest), &p.corners, &q.corners);
+    let tests = owned(&p, &q);
+    let mut open = Course::new(&a, &b).map_or(tests, |course| course.open_in_halves(args.gap, tests));
+    while open != 0 {
+        let test = open.trailing_zeros();
+        open &= open - 1;
+        if VERTICES >> test & 1 == 1 {
+            args.vf.push(lane, vertex_and_face(facet, pair, test));
+        } else {
+            args.ee.push(lane, two_edges(facet, pair, test - 6));
         }
-    });
+    }
 }
 
 /// The pair with the triangle that turns more first, or the one with the smaller number if both
