@@ -1,19 +1,21 @@
 //! Features of two triangles that certainly stay apart while their bodies turn: all 15 tests at
 //! once, without the walk through the step of each ([`super::solve`]).
 //!
-//! The frame is that of the second side, the one that turns less: it turns with it, about its pivot.
-//! In it the corners `b` of that side move linearly, or not at all. The corners `y` of the other side
-//! leave their chords in a window of time by at most `D = A h^2 / 8`, where `h` is the length of the
-//! window and `A` bounds the second derivative of these three corners ([`super::rates`]).
+//! The frame is that of the second side, the one that turns less: it turns with it, about its
+//! pivot. In it the corners `b` of that side move linearly, or not at all. The corners `y` of the
+//! other side leave their chords in a window of time by at most `D = A h^2 / 8`. Here `h` is the
+//! length of the window, and `A` bounds the second derivative of these three corners
+//! ([`super::rates`]).
 //!
 //! # What separates
 //!
-//! Let `n` be a direction. A corner `y` is above a corner `b` if `n . y - n . b > |n| (D + E + gap)`
-//! at both ends of the window; below, if the same holds of `-n`. On the chords both heights are
-//! linear in time, so it then holds at all times of the window. A point of a feature is a mixture of
-//! its corners. So if all corners of one feature are above all of another, or below, their points
-//! are farther apart than the gap throughout the window. One direction gives nine signs, and these
-//! the verdicts of all tests. A test is apart if in each window some direction says so.
+//! Let `n` be a direction. A corner `y` is above a corner `b` if
+//! `n . y - n . b > |n| (D + E + gap)` at both ends of the window; below, if the same holds of
+//! `-n`. On the chords both heights are linear in time, so it then holds at all times of the
+//! window. A point of a feature is a mixture of its corners. So if all corners of one feature are
+//! above all of another, or below, their points are farther apart than the gap throughout the
+//! window. One direction gives nine signs, and these the verdicts of all tests. A test is apart if
+//! in each window some direction says so.
 //!
 //! Any computed direction will do: it is exact by definition. In the middle of the window there are
 //! tried, in turn: the difference of the centroids, both normals, and the nine products of edges.
@@ -21,19 +23,19 @@
 //! # Windows
 //!
 //! The first ones are so short that both bodies together turn by at most [`TURN`] in one. A window
-//! in which the first directions leave a test is halved, twice at most; only in the shortest are all
-//! directions tried. Behind a window the next is as long as its place allows. Times are multiples
-//! of a power of two, so they are exact.
+//! in which the first directions leave a test is halved, twice at most. Only in the shortest are
+//! all directions tried. Behind a window the next is as long as its place allows. Times are
+//! multiples of a power of two, so they are exact.
 //!
 //! # Roundings
 //!
-//! Places are computed in f64. In units in which the reach is in [1, 2), differences from one of the
-//! corners are rounded to f32, and heights are of f32. `E` has two parts.
+//! Places are computed in f64. In units in which the reach is in [1, 2), differences from one of
+//! the corners are rounded to f32, and heights are of f32. `E` has two parts.
 //!
-//! - [`TURNING_CURVE`] times [`TURNING_PLACE`], `512u` of f64, of the reach. In this, `214u` are those
-//!   of a corner and of what is given, as derived there, and a difference has `2u` for either.
-//! - [`TURNING_SINGLE`], `16u` of f32, of the longest difference. Roundings of both corners are `2u`,
-//!   heights of three products and two sums `6u`, and their difference `2u`.
+//! - [`TURNING_CURVE`] times [`TURNING_PLACE`], `512u` of f64, of the reach. In this, `214u` are
+//!   those of a corner and of what is given, as derived there. A difference has `2u` for either.
+//! - [`TURNING_SINGLE`], `16u` of f32, of the longest difference. Roundings of both corners are
+//!   `2u`, heights of three products and two sums `6u`, and their difference `2u`.
 //!
 //! What is needed errs by `7u` of itself, below [`TURNING_SINGLE_UP`]. The rest of the first part,
 //! `290u` of f64, exceeds what underflow loses. A direction is at least 2^-60 long, so the rest is
@@ -265,8 +267,8 @@ impl Window {
 }
 
 impl Course {
-    /// Whether no test is left by the first directions in the first window, if that is the step. Then
-    /// [`Course::open`] leaves none.
+    /// Whether no test is left by the first directions in the first window, if that is the step.
+    /// Then [`Course::open`] leaves none.
     #[inline(always)]
     pub fn are_apart(&self, gap: f64, tests: u32) -> bool {
         if self.turns_far() {
@@ -320,8 +322,8 @@ impl Course {
     }
 }
 
-/// [`Course::open`] of two triangles. Points of the sides are the corners. Any order of the sides is
-/// right; most is left out if the second turns less. All tests, if nothing is known.
+/// [`Course::open`] of two triangles. Points of the sides are the corners. Any order of the sides
+/// is right; most is left out if the second turns less. All tests, if nothing is known.
 #[inline(always)]
 pub fn open(a: &Side, b: &Side, gap: f64, tests: u32) -> u32 {
     open_by(a, b, gap, tests, &Needed::ALL)

@@ -3,8 +3,8 @@
 //!          [`crate::prim::turning`].
 //! Launch   [`features()`] over the pairs, a warp a block, which leaves out features that planes
 //!          keep apart ([`crate::prim::turning::apart`]), and of bodies that turn far triangles in
-//!          balls that stay apart; then [`solve`] over its lists, both kinds in one launch. A lane a
-//!          pair; a grid of any size strides. Only in a step in which a body may turn.
+//!          balls that stay apart; then [`solve`] over its lists, both kinds in one launch. A lane
+//!          a pair; a grid of any size strides. Only in a step in which a body may turn.
 //! Reads    pairs, their features, bodies that turn, points at rest and vertices; tolerances of
 //!          bodies, if they differ.
 //! Writes   contacts and undecided pairs with bounds of toi; or the earliest.
@@ -34,7 +34,8 @@ pub const LANES: u32 = WARP;
 pub const SHARED: u32 = waiting_bytes(LANES);
 
 /// The tests that the triangles of each pair own, unless the triangles or the features stay apart.
-/// Most pairs end in one window of the whole step. The others wait on chip until there is one a lane.
+/// Most pairs end in one window of the whole step. The others wait on chip until there is one a
+/// lane.
 pub fn features<B: Block>(block: &mut B, args: &TurningFeaturesArgs) {
     let (count, lanes) = (args.pairs.listed(block), block.lanes());
     let share = block.share(count, lanes);
@@ -64,7 +65,8 @@ pub fn features<B: Block>(block: &mut B, args: &TurningFeaturesArgs) {
     }
 }
 
-/// Whether a pair owns a test, and its triangles do not stay apart for a reason that is quickly found.
+/// Whether a pair owns a test, and its triangles do not stay apart for a reason that is quickly
+/// found.
 #[inline(always)]
 fn may_meet<L: Lane>(lane: &L, args: &TurningFeaturesArgs, pair: Pair) -> bool {
     let [p, q] = [pair.a, pair.b].map(|triangle| lane.read(args.facets, triangle));
@@ -100,7 +102,7 @@ fn list<L: Lane>(lane: &L, args: &TurningFeaturesArgs, pair: Pair) {
 }
 
 /// The pair with the triangle that turns more first, or the one with the smaller number if both
-/// turn alike. In any order the same is proven, but up to the last bits, and with them what is left.
+/// turn alike. In another order the last bits differ, and what is left with them.
 #[inline(always)]
 fn in_order<L: Lane>(lane: &L, args: &TurningFeaturesArgs, pair: Pair) -> Pair {
     let square = |triangle| {
