@@ -205,7 +205,7 @@ kernels! {
     narrow_separate_thick_f32: separate::thick::<f32, B>, [ThickRungArgs<f32>], RUNG, separate::shared_bytes(RUNG);
     narrow_separate_thick_f64: separate::thick::<f64, B>, [ThickRungArgs<f64>], RUNG, separate::shared_bytes(RUNG);
     narrow_divide: divide::divide, [DivideArgs], WIDE, 0;
-    narrow_turning_features: turning::features, [TurningFeaturesArgs], NARROW, 0;
+    narrow_turning_features: turning::features, [TurningFeaturesArgs], turning::LANES, turning::SHARED;
     narrow_turning: turning::solve, [TurningArgs], NARROW, 0;
     narrow_near_f32: near::near::<f32, B>, [NearArgs<f32>], RUNG, 0, registers = 64;
     narrow_near_f64: near::near::<f64, B>, [NearArgs<f64>], RUNG, 0;

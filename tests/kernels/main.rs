@@ -13,4 +13,5 @@ mod queries;
 mod sweep;
 mod swell;
 mod turning;
+mod turning_apart;
 mod volume;

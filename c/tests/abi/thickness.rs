@@ -25,8 +25,9 @@ fn radii_count_as_in_the_library() {
     let each: Vec<f64> = (0..cloth.vertex_count()).map(|v| 0.01 * (v % 7) as f64).collect();
     let thin = wanted(&cloth, 0.1);
     for radii in [vec![0.05], each] {
-        let thickness = if radii.len() == 1 { radii[0].into() } else { radii.clone().into() };
-        let of = wanted(&cloth.clone().with_thickness::<nearmiss::Thickness>(thickness), 0.1);
+        let thickness: nearmiss::Thickness =
+            if radii.len() == 1 { radii[0].into() } else { radii.clone().into() };
+        let of = wanted(&cloth.clone().with_thickness(thickness), 0.1);
         assert!(of.len() > thin.len());
         let made = NearmissBody { radii: radii.as_ptr(), radius_count: radii.len(), ..described(&cloth) };
         assert_eq!(rows(&mut detector(&[made]), 0.1), of);

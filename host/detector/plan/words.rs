@@ -95,7 +95,7 @@ const KERNELS: [(&str, &str); 99] = [
     ("narrow_separate_thick", "supporting planes, of radii that differ"),
     ("narrow_separate", "supporting planes"),
     ("narrow_divide", "candidates of bodies that turn, and the others"),
-    ("narrow_turning_features", "features of those that do not stay apart, by balls on their arcs"),
+    ("narrow_turning_features", "features of those that no plane keeps apart"),
     ("narrow_turning", "contacts on arcs, slice by slice"),
     ("narrow_least", "the least distance of triangles"),
     ("narrow_witness", "the first pair with the least distance"),

@@ -1,4 +1,4 @@
-//! Balls around features that turn: most pairs of them stay apart, and these need no other test.
+//! Balls around triangles that turn far: most pairs of them stay apart, and these need no other test.
 //!
 //! Conservative advancement (Mirtich 1996): two balls that are `d` apart cannot meet within `d` over
 //! a bound of their speed. No ball is flattened on its way, however far it turns.

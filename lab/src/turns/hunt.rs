@@ -1,9 +1,11 @@
 //! The hunt: each pair by the kernels' test and by the judge.
 
 use super::families::{Case, FAMILIES, case};
+use super::triangles::Triangles;
 use crate::oracle::turning::{self, Judge, Known, Pair};
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::inclusion::{Answer, Params, Verdict};
+use nearmiss_kernels::prim::turning::apart::Needed;
 use nearmiss_kernels::prim::turning::{Side, edge_edge, vertex_face};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -22,7 +24,7 @@ pub struct Row {
     pub contacts: u64,
     /// Left undecided.
     pub undecided: u64,
-    /// Separated, and they meet: a bug.
+    /// Separated, or left out by the filter before, and they meet: a bug.
     pub missed: u64,
     /// A time after a contact: a bug.
     pub late: u64,
@@ -49,7 +51,7 @@ pub struct Row {
 /// A wrong verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// Separated, and they meet.
+    /// Separated, or left out by the filter before, and they meet.
     Missed,
     /// A time after a contact.
     Late,
@@ -123,7 +125,12 @@ pub fn judged(case: Case, most: u32, solve: impl Fn(&Case) -> Verdict) -> Judged
     let verdict = solve(&case);
     let microseconds = start.elapsed().as_secs_f64() * 1e6;
     let known = Judge::new(&case.pair, case.separation).first_contact(1.0, most);
-    let fault = fault(&verdict, &known, &case);
+    let fault = fault(&verdict, &known, &case).or_else(|| {
+        // The filter before the test: without the tolerance, which a detector adds.
+        let is_left_out = (0..Triangles::WAYS)
+            .any(|way| Triangles::new(&case, way).are_apart(case.separation, &Needed::ALL));
+        (is_left_out && known.is_contact()).then_some(Fault::Missed)
+    });
     Judged { case, verdict, known, fault, microseconds }
 }
 

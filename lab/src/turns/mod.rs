@@ -5,6 +5,7 @@ pub mod families;
 pub mod hunt;
 #[cfg(test)]
 mod tests;
+pub mod triangles;
 
 pub use families::FAMILIES;
 pub use hunt::{Row, hunt, verdict};

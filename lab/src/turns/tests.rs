@@ -2,8 +2,10 @@
 
 use super::families::{Case, FAMILIES, case};
 use super::hunt::{Fault, Row, fault, hunt, params, side, verdict};
+use super::triangles::Triangles;
 use crate::oracle::turning::Judge;
 use nearmiss_kernels::prim::inclusion::{Answer, Verdict};
+use nearmiss_kernels::prim::turning::apart::Needed;
 use nearmiss_kernels::prim::turning::rates::Rate;
 use nearmiss_kernels::prim::turning::{Contact, Motion};
 
@@ -134,4 +136,44 @@ fn wrong_verdicts_are_noticed() {
         far += usize::from(fault(&start, &known, &c) == Some(Fault::FarUndecided));
     }
     assert!(late > 60 && missed > 30 && false_ones > 30 && far > 30, "{late} {missed} {false_ones} {far}");
+}
+
+/// The pairs that the filter leaves out though they meet, and those that it leaves out of all that
+/// certainly stay apart.
+fn left_out(names: &[&str], count: u64, needed: &Needed) -> (usize, usize, usize) {
+    let (mut missed, mut parted, mut apart) = (0, 0, 0);
+    for name in names {
+        for i in 0..count {
+            let c = case(7, of(name), i);
+            let known = Judge::new(&c.pair, c.separation).first_contact(1.0, MOST);
+            let way = i as usize / 2 % Triangles::WAYS;
+            let is_left_out = Triangles::new(&c, way).are_apart(c.separation, needed);
+            missed += usize::from(is_left_out && known.is_contact());
+            apart += usize::from(known.is_apart());
+            parted += usize::from(is_left_out && known.is_apart());
+        }
+    }
+    (missed, parted, apart)
+}
+
+#[test]
+fn the_filter_leaves_out_no_features_that_meet() {
+    for name in FAMILIES {
+        let (missed, parted, apart) = left_out(&[name], 200, &Needed::ALL);
+        println!("{name}: {missed} missed, {parted} of {apart} left out");
+        assert_eq!(missed, 0, "{name}");
+    }
+}
+
+/// Half of the distance from the chord, and nine tenths of a gap.
+#[test]
+fn a_filter_that_needs_less_is_noticed() {
+    let tangent = ["large radius", "tangent", "coin", "deformable tangent", "same pivot"];
+    let (missed, ..) = left_out(&tangent, 200, &Needed { deviation: 0.5, ..Needed::ALL });
+    assert!(missed >= 5, "{missed}");
+    let (missed, ..) = left_out(&tangent, 200, &Needed { deviation: 0.0, ..Needed::ALL });
+    assert!(missed >= 50, "{missed}");
+    let gap = ["separation", "separation tangent", "separation deformable"];
+    let (missed, ..) = left_out(&gap, 200, &Needed { gap: 0.9, ..Needed::ALL });
+    assert!(missed >= 10, "{missed}");
 }

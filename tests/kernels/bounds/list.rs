@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// Constants on which no proof of an answer rests, or which are no allowance.
-const OTHERS: [(&str, &str); 43] = [
+const OTHERS: [(&str, &str); 46] = [
     ("U32", "the unit"),
     ("U64", "the unit"),
     ("CUBIC_VALUE", "a guess: the cubic's roots guarantee nothing"),
@@ -46,6 +46,9 @@ const OTHERS: [(&str, &str); 43] = [
     ("TURNING_SHORTEST", "a cost"),
     ("TURNING_NEAR", "a cost"),
     ("TURNING_ACROSS", "a cost"),
+    ("TURNING_SINGLE", "sixteen roundings where ten are needed: tests/kernels/turning_apart.rs needs it"),
+    ("TURNING_SINGLE_UP", "rounds what is needed upward, sixteen roundings where seven are needed"),
+    ("TURNING_SINGLE_FAINT", "a range"),
     ("SWELL", "what is listed, and 65,536 roundings where placing a vertex takes 40: tests/kernels/swell.rs"),
     ("SWELL_UP", "rounds to f32 upward: tests/kernels/swell.rs"),
     ("BALL", "what is left out, 8 million roundings where lengths and turns take 100: prim/balls.rs"),

@@ -1,6 +1,6 @@
 //! The constants of turning bodies.
 
-use super::U64;
+use super::{U32, U64};
 
 /// Error of a computed `sinc` or cosine of a half angle in [0, pi]: `4u`. Reduction: `u` of the
 /// distance to pi/2 or pi. Series: `u` for the last difference, `0.6u` for the others and the
@@ -68,3 +68,11 @@ pub const TURNING_NEAR: f64 = 1.0 / 1048576.0;
 /// The rounding of a nearest point that is put across a border: `2^-46` of a pair's reach. Ratio; a
 /// cost, proves nothing.
 pub const TURNING_ACROSS: f64 = 128.0 * U64;
+/// Error of the difference of two heights in f32, relative to the longest difference of a corner from
+/// the origin and to the direction's length: `16u` of f32, of which `10u` are needed. Derived in `prim::turning::apart`. Ratio.
+pub const TURNING_SINGLE: f32 = 16.0 * U32;
+/// Factor of what such a height must exceed, for the roundings of that: `1 + 16u` of f32. Ratio.
+pub const TURNING_SINGLE_UP: f32 = 1.0 + 16.0 * U32;
+/// A direction of f32 shorter than this proves nothing: 2^-60. Its square is a normal number.
+/// Length to the second power, in units of the reach.
+pub const TURNING_SINGLE_FAINT: f32 = f32::from_bits((127 - 60) << 23);

@@ -16,6 +16,7 @@
 //! | [`certificate`] | a certain contact |
 //! | [`ahead`] | a look for a certain contact of features that are near |
 //! | [`solve`] | the walk through the step |
+//! | [`apart`] | before all that: features of two triangles that planes keep apart |
 //!
 //! # Claims
 //!
@@ -48,6 +49,7 @@
 #![allow(clippy::needless_range_loop, reason = "loops by index unroll: nothing goes to memory on the GPU")]
 
 pub mod ahead;
+pub mod apart;
 pub mod certificate;
 pub mod motion;
 pub mod place;

@@ -75,18 +75,21 @@ impl<const N: usize> Motion<N> {
             scale = f64::pow2(-(parts.exponent + 63 - parts.mantissa.leading_zeros() as i32));
         }
         let (mut far, mut far_a, mut far_b) = (0.0, 0.0, 0.0);
+        // Roots of the largest squares: the same bits as the largest roots.
+        let square = |x: Vec3<f64>| x.dot(x);
         for i in 0..2 {
             pivot[i] = pivot[i] * scale;
-            far = Real::max(far, length(pivot[i]));
+            far = Real::max(far, square(pivot[i]));
             for k in 0..2 {
                 x[k][i] = x[k][i] * scale;
-                far_a = Real::max(far_a, length(x[k][i]));
+                far_a = Real::max(far_a, square(x[k][i]));
             }
             for k in 0..3 {
                 y[k][i] = y[k][i] * scale;
-                far_b = Real::max(far_b, length(y[k][i]));
+                far_b = Real::max(far_b, square(y[k][i]));
             }
         }
+        let (far, far_a, far_b) = (far.sqrt(), far_a.sqrt(), far_b.sqrt());
         let reach = (far + far_a + far_b) * TURN_UP;
         let error = TURNING_PLACE * reach;
         let rates = Rates::of(a.phi, b.phi, &pivot, &x, &y);

@@ -67,28 +67,31 @@ pub struct Rates {
 impl Rates {
     /// The bounds for two turns, the way between their pivots, and the points of both sides.
     #[inline]
-    pub fn of(
+    pub fn of<const A: usize, const B: usize>(
         phi_a: Vec3<f64>,
         phi_b: Vec3<f64>,
         pivot: &[Vec3<f64>; 2],
-        a: &[[Vec3<f64>; 2]; 2],
-        b: &[[Vec3<f64>; 2]; 3],
+        a: &[[Vec3<f64>; 2]; A],
+        b: &[[Vec3<f64>; 2]; B],
     ) -> Self {
         let (wa, wb) = (length(phi_a), length(phi_b));
         let d = length(phi_a - phi_b);
         let u = length(pivot[1] - pivot[0]);
         let far = length(pivot[0]).max(length(pivot[1]));
+        // Roots of the largest squares: the same bits as the largest roots.
+        let square = |x: Vec3<f64>| x.dot(x);
         let (mut v, mut r, mut c) = (0.0, 0.0, 0.0);
-        for k in 0..2 {
-            v = Real::max(v, length(a[k][1] - a[k][0]));
+        for k in 0..A {
+            v = Real::max(v, square(a[k][1] - a[k][0]));
             for i in 0..2 {
-                r = Real::max(r, length(a[k][i]));
-                c = Real::max(c, length(phi_a.cross(a[k][i])));
+                r = Real::max(r, square(a[k][i]));
+                c = Real::max(c, square(phi_a.cross(a[k][i])));
             }
         }
+        let (v, r, c) = (v.sqrt(), r.sqrt(), c.sqrt());
         // The distance from the axis; an axis that is known to a few roundings, or none.
         let c = if wa > 0.0 { (c / wa + TURNING_AXIS * r).min(r) } else { 0.0 };
-        let other = (0..3).fold(0.0, |most, k| Real::max(most, length(b[k][1] - b[k][0])));
+        let other = (0..B).fold(0.0, |most, k| Real::max(most, square(b[k][1] - b[k][0]))).sqrt();
         let (s, up) = (wa + wb, TURNING_UP);
         let one = u + v + wa * c;
         let two = 2.0 * wa * v + wa * wa * c;

@@ -1,55 +1,117 @@
 //! # Turning: pairs of triangles of bodies that turn → proven contacts
 //! Paper    not in the paper. The motion is that of FCL's and parry's interpolations; the proof is
 //!          [`crate::prim::turning`].
-//! Launch   [`features()`] over the pairs, which leaves out triangles and features in balls that
-//!          stay apart; then [`solve`] over its lists, both kinds in one launch. A lane a pair; a
-//!          grid of any size strides. Only in a step in which a body may turn.
+//! Launch   [`features()`] over the pairs, a warp a block, which leaves out features that planes
+//!          keep apart ([`crate::prim::turning::apart`]), and of bodies that turn far triangles in
+//!          balls that stay apart; then [`solve`] over its lists, both kinds in one launch. A lane
+//!          a pair; a grid of any size strides. Only in a step in which a body may turn.
 //! Reads    pairs, their features, bodies that turn, points at rest and vertices; tolerances of
 //!          bodies, if they differ.
 //! Writes   contacts and undecided pairs with bounds of toi; or the earliest.
 //! Before   pairs are complete: volumes hold the paths, and all within a tolerance of them.
 //! After    {pairs that meet on their true paths} ⊆ listed; no time is late.
 //! Room     pairs, hits: counted past the end, grown, run again.
-//! Cost     8 B pair, 160 B each of two bodies and 24 B a vertex (gathered). About 15 slices a pair,
-//!          each 40 ns on a CPU.
+//! Cost     8 B pair, 160 B each of two bodies and 24 B a vertex (gathered). A pair of triangles
+//!          takes some 1,500 operations, half of them in f32; those that one window does not decide
+//!          take them again, and three times as many. About 6 slices and 17 places a pair of
+//!          features.
 
 use super::climb::emit;
 use super::features::{VERTICES, owned, two_edges, vertex_and_face};
 use super::{of_edge_edge, of_vertex_face, stride};
 use crate::abi::{Output, Pair, Point, Positions, Span, TurnRecord, TurningArgs, TurningFeaturesArgs};
 use crate::bvh::turns::body_of;
-use crate::exec::{Block, Lane};
-use crate::math::{Vec3, pick, rigid};
+use crate::exec::{Block, Lane, WARP};
+use crate::math::{Vec3, rigid};
 use crate::prim::balls::stay_apart;
+use crate::prim::turning::apart::Course;
 use crate::prim::turning::{Side, edge_edge, vertex_face};
+use crate::queue::waiting::{Waiting, waiting_bytes};
+
+/// Lanes of a block of [`features()`]: one warp.
+pub const LANES: u32 = WARP;
+/// Bytes of shared memory of a block of [`features()`]: pairs that wait.
+pub const SHARED: u32 = waiting_bytes(LANES);
 
 /// The tests that the triangles of each pair own, unless the triangles or the features stay apart.
+/// Most pairs end in one window of the whole step. The others wait on chip until there is one a
+/// lane.
 pub fn features<B: Block>(block: &mut B, args: &TurningFeaturesArgs) {
-    each(block, args.pairs, |lane, pair| {
-        let facet = |triangle| lane.read(args.facets, triangle);
-        let (p, q) = (facet(pair.a), facet(pair.b));
-        let mut mask = owned(&p, &q);
-        if mask == 0 {
-            return;
+    let (count, lanes) = (args.pairs.listed(block), block.lanes());
+    let share = block.share(count, lanes);
+    let mut waiting = Waiting::new(block);
+    let mut base = share.first;
+    loop {
+        let is_end = base >= share.end;
+        block.phase(|lane| {
+            let i = base + lane.lane();
+            let pair = (!is_end && i < count).then(|| in_order(lane, args, args.pairs.get(lane, i)));
+            waiting.set(lane, pair.filter(|&pair| may_meet(lane, args, pair)));
+        });
+        waiting.add(block);
+        let (from, some) = waiting.take(block, is_end);
+        if some > 0 {
+            block.phase(|lane| {
+                if lane.lane() < some {
+                    list(lane, args, waiting.get(lane, from + lane.lane()));
+                }
+                lane.meet();
+            });
         }
-        let [a, b] = sides(lane, (&args.frames, args.rest), [&p.corners, &q.corners]);
-        if stay_apart(&a, &b, args.gap) {
-            return;
+        if is_end & waiting.is_empty() {
+            break;
         }
-        while mask != 0 {
-            let test = mask.trailing_zeros();
-            mask &= mask - 1;
-            let (of_a, of_b) = parts(&a, &b, test);
-            if stay_apart(&of_a, &of_b, args.gap) {
-                continue;
-            }
-            if VERTICES >> test & 1 == 1 {
-                args.vf.push(lane, vertex_and_face(facet, pair, test));
-            } else {
-                args.ee.push(lane, two_edges(facet, pair, test - 6));
-            }
+        base = if is_end { base } else { base + share.step };
+    }
+}
+
+/// Whether a pair owns a test, and its triangles do not stay apart for a reason that is quickly
+/// found.
+#[inline(always)]
+fn may_meet<L: Lane>(lane: &L, args: &TurningFeaturesArgs, pair: Pair) -> bool {
+    let [p, q] = [pair.a, pair.b].map(|triangle| lane.read(args.facets, triangle));
+    let tests = owned(&p, &q);
+    if tests == 0 {
+        return false;
+    }
+    let [a, b] = sides(lane, (&args.frames, args.rest), &p.corners, &q.corners);
+    match Course::new(&a, &b) {
+        Some(course) if course.turns_far() => !stay_apart(&a, &b, args.gap),
+        Some(course) => !course.are_apart(args.gap, tests),
+        None => true,
+    }
+}
+
+/// Lists those tests of a pair whose features may meet.
+#[inline(always)]
+fn list<L: Lane>(lane: &L, args: &TurningFeaturesArgs, pair: Pair) {
+    let facet = |triangle| lane.read(args.facets, triangle);
+    let (p, q) = (facet(pair.a), facet(pair.b));
+    let [a, b] = sides(lane, (&args.frames, args.rest), &p.corners, &q.corners);
+    let tests = owned(&p, &q);
+    let mut open = Course::new(&a, &b).map_or(tests, |course| course.open_in_halves(args.gap, tests));
+    while open != 0 {
+        let test = open.trailing_zeros();
+        open &= open - 1;
+        if VERTICES >> test & 1 == 1 {
+            args.vf.push(lane, vertex_and_face(facet, pair, test));
+        } else {
+            args.ee.push(lane, two_edges(facet, pair, test - 6));
         }
-    });
+    }
+}
+
+/// The pair with the triangle that turns more first, or the one with the smaller number if both
+/// turn alike. In another order the last bits differ, and what is left with them.
+#[inline(always)]
+fn in_order<L: Lane>(lane: &L, args: &TurningFeaturesArgs, pair: Pair) -> Pair {
+    let square = |triangle| {
+        let body = body_of(lane, args.frames.turns, lane.read(args.facets, triangle).corners[0]);
+        body.map_or(0.0, |body| Vec3(body.turn).dot(Vec3(body.turn)))
+    };
+    let (a, b) = (square(pair.a), square(pair.b));
+    let is_first = a > b || (a == b && pair.a < pair.b);
+    if is_first { pair } else { Pair { a: pair.b, b: pair.a } }
 }
 
 /// Runs `body` for each pair of a list, a lane each, in a grid of any size.
@@ -67,39 +129,19 @@ fn each<B: Block>(block: &mut B, pairs: Output<Pair>, mut body: impl FnMut(&B::L
     });
 }
 
-/// The features of a test, see [`owned`], each as three points: a vertex thrice, or the ends of an
-/// edge and the middle between them.
-#[inline(always)]
-fn parts(a: &Side, b: &Side, test: u32) -> (Side, Side) {
-    let vertex = |side: &Side, k: u32| Side { points: [pick(side.points, k); 3], ..*side };
-    let edge = |side: &Side, k: u32| {
-        let [x, y, z] = side.points;
-        let ends = [pick([x, y, z], k), pick([y, z, x], k)];
-        let middle = [0, 1].map(|end| (ends[0][end] + ends[1][end]) * 0.5);
-        Side { points: [ends[0], ends[1], middle], ..*side }
-    };
-    if test < 3 {
-        (vertex(a, test), *b)
-    } else if test < 6 {
-        (*a, vertex(b, test - 3))
-    } else {
-        (edge(a, (test - 6) / 3), edge(b, (test - 6) % 3))
-    }
-}
-
 /// The contacts of both kinds.
 pub fn solve<B: Block>(block: &mut B, args: &TurningArgs) {
     let rung = &args.rung;
     let places = (&rung.frames, args.rest);
     each(block, rung.vf.pairs, |lane, pair| {
         let face = lane.read(rung.faces, pair.b);
-        let [v, f] = sides(lane, places, [&[pair.a], &face]);
+        let [v, f] = sides(lane, places, &[pair.a], &face);
         let verdict = vertex_face(&v, &f, &of_vertex_face(lane, rung, pair));
         emit(lane, rung, &rung.vf, pair, verdict);
     });
     each(block, rung.ee.pairs, |lane, pair| {
         let ends = [pair.a, pair.b].map(|edge| lane.read(rung.edges, edge));
-        let [a, b] = sides(lane, places, [&ends[0], &ends[1]]);
+        let [a, b] = sides(lane, places, &ends[0], &ends[1]);
         let verdict = edge_edge(&a, &b, &of_edge_edge(lane, rung, pair));
         emit(lane, rung, &rung.ee, pair, verdict);
     });
@@ -108,28 +150,38 @@ pub fn solve<B: Block>(block: &mut B, args: &TurningArgs) {
 /// The motions of two features, each of one body. Vertices that do not turn are seen from the
 /// pivot of the others, so that nothing far from the origin is rounded but their difference.
 #[inline(always)]
-fn sides<L: Lane>(
+fn sides<L: Lane, const P: usize, const Q: usize>(
+    lane: &L,
+    places: (&Positions<f64>, Span<Point<f64>>),
+    p: &[u32; P],
+    q: &[u32; Q],
+) -> [Side; 2] {
+    let turns = places.0.turns;
+    let (a, b) = (body_of(lane, turns, p[0]), body_of(lane, turns, q[0]));
+    [side(lane, places, p, (&a, &b)), side(lane, places, q, (&b, &a))]
+}
+
+/// The motion of a feature of a body that turns, or of another one against a body that does.
+#[inline(always)]
+fn side<L: Lane, const N: usize>(
     lane: &L,
     (frames, rest): (&Positions<f64>, Span<Point<f64>>),
-    features: [&[u32]; 2],
-) -> [Side; 2] {
-    let bodies = features.map(|vertices| body_of(lane, frames.turns, vertices[0]));
-    [0, 1].map(|i| {
-        let others = bodies[1 - i].unwrap_or_default();
-        let mut points = [[Vec3([0.0; 3]); 2]; 3];
-        let Some(own) = bodies[i] else {
-            let pivot = others.path.map(Vec3);
-            for (point, &vertex) in points.iter_mut().zip(features[i]) {
-                let ends = lane.read(frames.moving, vertex);
-                *point = [ends.t0.at - pivot[0], ends.t1.at - pivot[1]];
-            }
-            return Side { phi: Vec3([0.0; 3]), pivot, points };
-        };
-        for (point, &vertex) in points.iter_mut().zip(features[i]) {
-            *point = [turned(&own, lane.read(rest, own.rest + (vertex - own.vertex)).at); 2];
+    vertices: &[u32; N],
+    (own, other): (&Option<TurnRecord>, &Option<TurnRecord>),
+) -> Side {
+    let mut points = [[Vec3([0.0; 3]); 2]; 3];
+    let Some(own) = own else {
+        let pivot = other.map_or([Vec3([0.0; 3]); 2], |other| other.path.map(Vec3));
+        for k in 0..N {
+            let ends = lane.read(frames.moving, vertices[k]);
+            points[k] = [ends.t0.at - pivot[0], ends.t1.at - pivot[1]];
         }
-        Side { phi: Vec3(own.turn), pivot: own.path.map(Vec3), points }
-    })
+        return Side { phi: Vec3([0.0; 3]), pivot, points };
+    };
+    for k in 0..N {
+        points[k] = [turned(own, lane.read(rest, own.rest + (vertices[k] - own.vertex)).at); 2];
+    }
+    Side { phi: Vec3(own.turn), pivot: own.path.map(Vec3), points }
 }
 
 /// A point of a mesh from the pivot, turned as at the start of the step.

@@ -1,0 +1,56 @@
+//! The filter of features that turn, on the hunt's pairs: each feature as a part of a triangle.
+
+use super::families::Case;
+use super::hunt::side;
+use nearmiss_kernels::math::Vec3;
+use nearmiss_kernels::prim::turning::Side;
+use nearmiss_kernels::prim::turning::apart::{Needed, open_by};
+
+/// Two triangles that have the features of a case, and the number of their test.
+pub struct Triangles {
+    /// The triangles.
+    pub sides: [Side; 2],
+    /// The test: see [`nearmiss_kernels::prim::turning::apart::open`].
+    pub test: u32,
+}
+
+/// Adds corners to a feature of `count` points. They go the way of the first one.
+fn completed(mut side: Side, count: usize, others: &Side) -> Side {
+    let [x, y, z] = (others.points[1][0] - others.points[0][0]).0;
+    let more = [Vec3([y, z, x]) * 0.7, Vec3([z, -x, y]) * 0.6];
+    for k in count..3 {
+        let by = more[k - 1];
+        side.points[k] = side.points[0].map(|point| point + by);
+    }
+    side
+}
+
+impl Triangles {
+    /// Ways to have the features among the corners, with both orders of the triangles.
+    pub const WAYS: usize = 18;
+
+    /// The triangles of a case, in one of the [`Triangles::WAYS`].
+    pub fn new(case: &Case, way: usize) -> Self {
+        let [mut a, mut b] = case.pair.sides.map(|s| side(&s));
+        let (of_a, of_b) = if case.pair.is_face { (1, 3) } else { (2, 2) };
+        a = completed(a, of_a, &b);
+        b = completed(b, of_b, &a);
+        let (i, j) = (way % 3, way / 3 % 3);
+        a.points.rotate_right(i);
+        b.points.rotate_right(j);
+        let (sides, test) = match (case.pair.is_face, way < 9) {
+            (true, true) => ([a, b], i),
+            (true, false) => ([b, a], 3 + i),
+            (false, true) => ([a, b], 6 + 3 * i + j),
+            (false, false) => ([b, a], 6 + 3 * j + i),
+        };
+        Triangles { sides, test: u32::try_from(test).expect("a test is below 15") }
+    }
+
+    /// Whether the filter leaves the features out, within a gap.
+    pub fn are_apart(&self, gap: f64, needed: &Needed) -> bool {
+        let [a, b] = &self.sides;
+        let tests = (1 << 15) - 1;
+        open_by(a, b, gap, tests, needed) >> self.test & 1 == 0
+    }
+}
