@@ -36,6 +36,7 @@ pub const SHARED: u32 = waiting_bytes(LANES);
 /// The tests that the triangles of each pair own, unless the triangles or the features stay apart.
 /// Most pairs end in one window of the whole step. The others wait on chip until there is one a
 /// lane.
+#[inline(always)]
 pub fn features<B: Block>(block: &mut B, args: &TurningFeaturesArgs) {
     let (count, lanes) = (args.pairs.listed(block), block.lanes());
     let share = block.share(count, lanes);
