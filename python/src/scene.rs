@@ -243,8 +243,8 @@ impl Scene {
     ///
     /// A feature is a vertex, an edge or a face.
     ///
-    /// - `ring`: from 1. A pair of features is left out if at most ring - 1 edges are between a vertex of
-    ///   one and a vertex of the other. Ring 1 has pairs with a common vertex. All queries leave
+    /// - `ring`: from 1. Two features are left out if at most ring - 1 edges are between a vertex of one
+    ///   and a vertex of the other. Ring 1 has pairs with a common vertex. All queries leave
     ///   these out, except Discrete(adjacent=True). Ring 2 also has pairs that an edge joins.
     /// - `within`: a length. Pairs of features that are nearer than this in the rest shape are left out.
     /// - `rest`: the rest shape, an (n, 3) array. Default: the place of the body, at t = 0.
