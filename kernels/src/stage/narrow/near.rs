@@ -54,8 +54,7 @@ fn both<R: Real, B: Block>(
     each(
         block,
         args,
-        args.vf,
-        args.vf_hits,
+        (args.vf, args.vf_hits),
         &Filter::<R, true>::new(args.distance),
         |lane, pair| {
             let (v, [x, y, z]) = vertex_face_at(lane, args.positions, args.faces, pair);
@@ -67,8 +66,7 @@ fn both<R: Real, B: Block>(
     each(
         block,
         args,
-        args.ee,
-        args.ee_hits,
+        (args.ee, args.ee_hits),
         &Filter::<R, false>::new(args.distance),
         |lane, pair| {
             let [[x, y], [z, w]] = edge_edge_at(lane, args.positions, args.edges, pair);
@@ -84,8 +82,7 @@ fn both<R: Real, B: Block>(
 fn each<R: Real, B: Block, M: RowMap<Row = [Vec3<R>; 4]>>(
     block: &mut B,
     args: &NearArgs<R>,
-    pairs: Output<Pair>,
-    hits: Output<NearHit>,
+    (pairs, hits): (Output<Pair>, Output<NearHit>),
     filter: &M,
     gather: impl Fn(&B::Lane, Pair) -> [Vec3<R>; 4],
     measure: impl Fn([Vec3<R>; 4]) -> Option<Near>,
