@@ -258,8 +258,8 @@ impl Scene {
     ///
     /// A feature is a vertex, an edge or a face.
     ///
-    /// - `ring`: from 1. A pair of features is left out if a vertex of one and a vertex of the other have
-    ///   at most ring - 1 edges between them. Ring 1 has pairs with a common vertex. All queries leave
+    /// - `ring`: from 1. Two features are left out if at most ring - 1 edges are between a vertex of one
+    ///   and a vertex of the other. Ring 1 has pairs with a common vertex. All queries leave
     ///   these out, except Discrete(adjacent=True). Ring 2 also has pairs that an edge joins.
     /// - `within`: a length. Pairs of features that are nearer than this in the rest shape are left out.
     /// - `rest`: the rest shape, an (n, 3) array. Default: the place of the body, at t = 0.
@@ -269,9 +269,9 @@ impl Scene {
     /// BodyDistances: these raise InvalidArgumentError if there are exclusions. A removed body loses its
     /// exclusions.
     ///
-    /// Raises InvalidArgumentError for a body or a face that does not exist, a ring of 0, a length that
-    /// is negative or not finite, and a rest shape of another number of vertices. InputError for
-    /// vertices that are not finite. Then nothing has changed.
+    /// Raises InvalidArgumentError for a body or a face that does not exist, and for a ring of 0. Also for
+    /// a length that is negative or not finite, and for a rest shape of another number of vertices.
+    /// InputError for vertices that are not finite. Then nothing has changed.
     #[pyo3(signature = (body, *, ring = None, within = None, rest = None, faces = None))]
     fn exclude(
         &mut self,

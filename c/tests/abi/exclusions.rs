@@ -32,6 +32,7 @@ fn features_are_left_out_as_by_the_library() {
         assert_eq!(told_of, Ok(()));
         let (at, count) = (pairs.as_ptr().cast(), pairs.len());
         let told_of =
+            // SAFETY: as many pairs are there.
             told(|e| unsafe { nearmiss_detector_exclude_pairs(Some(&mut own), 0, 0, at, count, e) });
         assert_eq!(told_of, Ok(()));
         rows(&mut own)
@@ -70,6 +71,7 @@ fn features_are_left_out_as_by_the_library() {
     }
     let pair = [5u32, 100_000];
     let error =
+        // SAFETY: a pair is there.
         told(|e| unsafe { nearmiss_detector_exclude_pairs(Some(&mut own), 0, 0, pair.as_ptr(), 1, e) });
     refused(error, refuse, "vertex 100000 of");
 }
