@@ -517,6 +517,12 @@ typedef struct {
     uint32_t mask;
     // The pose of a rigid body at the start.
     NearmissPose pose;
+    // Thickness: radii around the surface that belong to the body, lengths of at least 0. Near
+    // queries and queries in motion add those of both bodies to their distance. All others ignore
+    // them.
+    const double *radii;
+    // How many radii there are: 0 for none, 1 for all vertices, or one for each.
+    size_t radius_count;
 } NearmissBody;
 
 // Pairs of features of a body that are not tested against each other, and faces that take no
@@ -984,6 +990,21 @@ NearmissCode nearmiss_detector_replace(NearmissDetector *detector,
 NearmissCode nearmiss_detector_remove(NearmissDetector *detector,
                                       uint32_t id,
                                       NearmissError *error);
+
+// Sets the thickness of a body, from the next query on, which rebuilds: `count` radii, as those of
+// `NearmissBody`. If it is the same, nothing changes. Another one ends the preparation of
+// submissions.
+//
+// Fails with `NEARMISS_INVALID_ARGUMENT` for a radius that is no length, and for another number of
+// radii. Then the thickness is as before.
+//
+// # Safety
+// `radii` points to that many numbers.
+NearmissCode nearmiss_detector_set_thickness(NearmissDetector *detector,
+                                             uint32_t id,
+                                             const double *radii,
+                                             size_t count,
+                                             NearmissError *error);
 
 // Replaces the list of pairs of bodies that are not tested against each other, by any query: as
 // the links of a robot that share a joint. `pairs` has `count` pairs, two numbers of bodies each.

@@ -64,8 +64,9 @@ pub struct NearmissBody {
     pub mask: u32,
     /// The pose of a rigid body at the start.
     pub pose: NearmissPose,
-    /// Thickness: radii around the surface that belong to the body, lengths of at least 0. Near queries
-    /// and queries in motion add those of both bodies to their distance; all others ignore them.
+    /// Thickness: radii around the surface that belong to the body, lengths of at least 0. Near
+    /// queries and queries in motion add those of both bodies to their distance. All others ignore
+    /// them.
     pub radii: *const f64,
     /// How many radii there are: 0 for none, 1 for all vertices, or one for each.
     pub radius_count: usize,

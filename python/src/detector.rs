@@ -298,15 +298,7 @@ impl Detector {
         rest: Option<&Bound<'_, PyAny>>,
         faces: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<()> {
-        let given = exclusions::Given::of(ring, within, rest, faces)?;
-        let id = self.body(py, body)?;
-        self.run(py, Does::Queries, |detector| {
-            if given.rests_now() {
-                detector.download_positions()?;
-            }
-            let own = given.of_body(detector.scene(), id);
-            detector.exclude(id, own)
-        })
+        self.set_exclusions(py, body, exclusions::Given::of(ring, within, rest, faces)?)
     }
 
     /// Replace the list of pairs of vertices of two bodies: see Scene.exclude_pairs for the arguments.
@@ -322,11 +314,7 @@ impl Detector {
         #[pyo3(from_py_with = body_of)] other: Key,
         pairs: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
-        let (list, both) = (exclusions::pairs(pairs)?, [body, other]);
-        self.run(py, Does::Queries, |detector| {
-            let ids = key::each(detector.scene(), &both)?;
-            detector.exclude_pairs(ids, &list)
-        })
+        self.set_excluded_pairs(py, &[body, other], &exclusions::pairs(pairs)?)
     }
 
     /// Pairs of vertices of two bodies that are left out, as an (n, 2) array, ascending.
@@ -336,11 +324,7 @@ impl Detector {
         #[pyo3(from_py_with = body_of)] body: Key,
         #[pyo3(from_py_with = body_of)] other: Key,
     ) -> PyResult<Bound<'py, numpy::PyArray2<u32>>> {
-        let both = [body, other];
-        let list = self.look(py, |detector| {
-            key::each(detector.scene(), &both).map(|ids| detector.scene().excluded_pairs(ids))
-        })?;
-        Ok(crate::host::rows(py, &list.map_err(raised)?))
+        self.excluded_rows(py, &[body, other])
     }
 
     /// Return the place of a body at the start and the end of its step, copied to the host.

@@ -1,7 +1,10 @@
 //! Exclusions of bodies, as Python names them.
 
-use crate::errors::{choice, integer};
-use crate::host::{Most, asarray, positions};
+use crate::asked::Does;
+use crate::detector::Detector;
+use crate::errors::{choice, integer, raised};
+use crate::host::{Most, asarray, positions, rows};
+use crate::key::{self, Key};
 use nearmiss::mesh::Positions;
 use nearmiss::scene::{BodyId, Exclusions, RestShape, Scene};
 use numpy::{PyArrayDescrMethods, PyArrayMethods, PyUntypedArrayMethods};
@@ -80,4 +83,47 @@ fn numbers<const N: usize>(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Ve
         rows.push(own);
     }
     Ok(rows)
+}
+
+impl Detector {
+    /// Replaces the exclusions of a body.
+    ///
+    /// # Errors
+    /// Those of the library.
+    pub fn set_exclusions(&self, py: Python<'_>, body: Key, given: Given) -> PyResult<()> {
+        let id = self.body(py, body)?;
+        self.run(py, Does::Queries, |detector| {
+            if given.rests_now() {
+                detector.download_positions()?;
+            }
+            let own = given.of_body(detector.scene(), id);
+            detector.exclude(id, own)
+        })
+    }
+
+    /// Replaces the pairs of vertices of two bodies that are left out.
+    ///
+    /// # Errors
+    /// Those of the library.
+    pub fn set_excluded_pairs(&self, py: Python<'_>, both: &[Key; 2], pairs: &[[u32; 2]]) -> PyResult<()> {
+        self.run(py, Does::Queries, |detector| {
+            let ids = key::each(detector.scene(), both)?;
+            detector.exclude_pairs(ids, pairs)
+        })
+    }
+
+    /// Returns the pairs of vertices of two bodies that are left out.
+    ///
+    /// # Errors
+    /// Those of the library.
+    pub fn excluded_rows<'py>(
+        &self,
+        py: Python<'py>,
+        both: &[Key; 2],
+    ) -> PyResult<Bound<'py, numpy::PyArray2<u32>>> {
+        let list = self.look(py, |detector| {
+            key::each(detector.scene(), both).map(|ids| detector.scene().excluded_pairs(ids))
+        })?;
+        Ok(rows(py, &list.map_err(raised)?))
+    }
 }

@@ -46,7 +46,7 @@ fn side((phi, pivot, way): Body, points: [Whole; 3]) -> Side {
 fn touching(r: &mut SmallRng, i: usize) -> ([Side; 2], u32) {
     let (far, size) = [(10, 1 << 20), (1 << 20, 1 << 20), (1 << 30, 1 << 20)][i % 3];
     let (b, shift) = ([0; 3].map(|_| any(r, size / 8).map(|x| 8 * x)), any(r, far));
-    let (points, test) = if i / 2 % 2 == 0 {
+    let (points, test) = if (i / 2).is_multiple_of(2) {
         let weights = [[4, 2, 2], [4, 4, 0], [6, 1, 1], [3, 3, 2], [8, 0, 0]][r.random_range(0..5)];
         let at = [0, 1, 2].map(|k| (0..3).map(|j| weights[j] * b[j][k]).sum::<i64>() / 8);
         ([at, plus(at, any(r, size)), plus(at, any(r, size))], 0)
@@ -56,7 +56,7 @@ fn touching(r: &mut SmallRng, i: usize) -> ([Side; 2], u32) {
         ([plus(middle, half), less(middle, half), any(r, size)], 6)
     };
     let of_b = body(r, far);
-    let of_a = if i % 2 == 0 { of_b } else { body(r, far) };
+    let of_a = if i.is_multiple_of(2) { of_b } else { body(r, far) };
     let moved = |points: [Whole; 3]| points.map(|point| plus(point, shift));
     ([side(of_a, moved(points)), side(of_b, moved(b))], test)
 }

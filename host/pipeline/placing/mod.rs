@@ -2,6 +2,7 @@
 
 mod device_arrays;
 pub mod turns;
+mod vertices;
 
 pub use device_arrays::{Seen, Whereabouts};
 
@@ -16,10 +17,11 @@ use bytemuck::Pod;
 use device_arrays::DeviceArrays;
 use nearmiss_kernels::abi::{
     KEEPS_END, LENT, LENT_POSES, POSED, PlaceArgs, Placement, Point, PoseRecord, Positions, RESTING, Span,
-    StartsArgs, TurnRecord, TurnsArgs, UPLOADED, VertexMotion as Ends,
+    StartsArgs, TurnRecord, TurnsArgs, UPLOADED,
 };
 use nearmiss_kernels::math::{Real, Vec3, round};
 use turns::Turns;
+use vertices::Vertices;
 
 /// A body that a frame moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,64 +37,6 @@ impl Moved {
     /// position; only the device has the end of the others.
     fn at_one_end(self, bodies: &[Body]) -> Moved {
         Moved { rests: self.rests && bodies[self.body].is_device_resident(), ..self }
-    }
-}
-
-/// Positions at t = 0, or at both ends of the step once a query reads them.
-enum Vertices<R: Precision> {
-    Still(Buffer<Point<R>>),
-    Moving(Buffer<Ends<R>>),
-}
-
-impl<R: Precision> Vertices<R> {
-    fn new(device: &Device, moving: bool, len: usize) -> Result<Self, Error> {
-        Ok(if moving { Vertices::Moving(device.buffer(len)?) } else { Vertices::Still(device.buffer(len)?) })
-    }
-
-    fn span(&self) -> Positions<R> {
-        match self {
-            Vertices::Still(points) => {
-                Positions { still: points.span(), moving: Span::EMPTY, turns: Span::EMPTY }
-            }
-            Vertices::Moving(motions) => {
-                Positions { still: Span::EMPTY, moving: motions.span(), turns: Span::EMPTY }
-            }
-        }
-    }
-
-    fn len(&self) -> usize {
-        match self {
-            Vertices::Still(points) => points.len(),
-            Vertices::Moving(motions) => motions.len(),
-        }
-    }
-
-    /// Sets the first vertices: those of the bodies, one behind the other, with these radii. A body
-    /// that stands still has the same positions at both ends.
-    fn write<'a>(&mut self, bodies: impl Iterator<Item = &'a Body>, radii: &[R]) -> Result<(), Error> {
-        let mut radii = radii.iter().copied().chain(std::iter::repeat(R::ZERO));
-        let mut radius = || radii.next().unwrap_or(R::ZERO);
-        match self {
-            Vertices::Still(buffer) => {
-                let mut points = Vec::with_capacity(buffer.len());
-                for body in bodies {
-                    points.extend(R::points(body.positions_t0()).map(|at| Point { at, radius: radius() }));
-                }
-                buffer.write(&points)
-            }
-            Vertices::Moving(buffer) => {
-                let mut ends = Vec::with_capacity(buffer.len());
-                for body in bodies {
-                    let [t0, t1] = body.ends();
-                    let both = R::points(t0).zip(R::points(t1));
-                    ends.extend(both.map(|(t0, t1)| {
-                        let radius = radius();
-                        Ends { t0: Point { at: t0, radius }, t1: Point { at: t1, radius } }
-                    }));
-                }
-                buffer.write(&ends)
-            }
-        }
     }
 }
 
