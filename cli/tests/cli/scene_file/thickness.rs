@@ -41,7 +41,7 @@ fn a_thickness_that_cannot_be_is_refused() {
     let folder = Folder::new("scene-thickness-bad");
     let [low, high] = triangles(&folder);
     for (own, said) in [
-        ("thickness = -1", "thickness of low must be from 0 to 2^60, got -1"),
+        ("thickness = -1", "low.obj must be from 0 to 2^60, got -1"),
         ("thickness = nan", "got NaN"),
         ("thickness = [0.1]", "1 radii for 3 vertices"),
         ("thickness = \"thick\"", "`thickness` must be a number, or a list of numbers"),
