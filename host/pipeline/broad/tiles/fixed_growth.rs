@@ -95,6 +95,6 @@ mod tests {
         assert!(take(&mut held, 1.0) && held.take(thick, true) && held.fitted().serves(thick));
         assert!(!take(&mut held, 1.0), "both are served");
         let fits = (0..2 * PATIENCE).filter(|_| take(&mut held, 0.5)).count();
-        assert!(fits == 1 && held.fitted() == Growth::margin(0.5), "{held:?}");
+        assert!(fits == 1 && held.fitted() == Growth::margin(1.0), "{held:?}");
     }
 }

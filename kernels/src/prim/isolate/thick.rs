@@ -10,7 +10,8 @@
 //! linear in time, so the time until which that holds is the least of four quotients, as in
 //! [`super::hull`]. The best direction leans towards vertices with a larger radius. It is that which
 //! parts the cone around a corner, a side or the whole hull: one of nine, and the best of them is taken.
-//! A direction that is not the best costs steps and no truth.
+//! A direction that is not the best costs steps and no truth. Features that turn at a nearly constant
+//! distance use up a fixed direction soon: there it turns, as in [`super::turning`].
 //!
 //! *Within.* At a time, the nearest points are within the separation and the least radius that
 //! [`Radii::of_nearest`] leaves them, all roundings included.
@@ -35,6 +36,8 @@ use crate::prim::near::{Radii, shortest};
 const RESTS: f64 = 32.0;
 /// Steps of a near pair before times ahead are tested.
 const PATIENCE: u32 = 16;
+/// Attempts of a direction that turns in a step.
+const TURNS: u32 = 3;
 /// How often the time that is tested ahead doubles: from a tolerance up to the end of the step.
 const AHEAD: u32 = 40;
 
@@ -49,6 +52,8 @@ pub struct Uneven {
     slack: f64,
     time_tolerance: f64,
     at: f64,
+    /// For how long a direction that turns is tried next.
+    stride: f64,
     end: f64,
     steps: u32,
     most: u32,
@@ -66,6 +71,7 @@ impl Uneven {
             slack,
             time_tolerance: pair.time_tolerance(slack),
             at: 0.0,
+            stride: pair.end,
             end: pair.end,
             steps: 0,
             // Nothing is known of what is not finite.
@@ -99,16 +105,17 @@ impl Uneven {
             return Some(Advanced::Open { from: t });
         }
         self.steps += 1;
-        if self.is_within(t) {
-            return Some(Advanced::Within { from: t, to: t });
-        }
         let x = self.vectors(t);
         let (n, height) = self.direction(&x);
+        let is_near = height <= self.separation + self.slack;
+        if is_near && self.is_within(t) {
+            return Some(Advanced::Within { from: t, to: t });
+        }
         let next = self.until(&x, n).map_or(t, |next| next.max(t));
         if next >= end {
             return Some(Advanced::Apart);
         }
-        if height <= self.separation + self.slack || next - t < 0.25 * short {
+        if is_near || next - t < 0.25 * short {
             let to = (next + short).min(end);
             if self.is_within(to) {
                 return Some(Advanced::Within { from: next, to });
@@ -117,8 +124,49 @@ impl Uneven {
                 return Some(self.look_ahead(next));
             }
         }
-        self.at = next;
+        for _ in 0..TURNS {
+            let to = (t + self.stride).min(end);
+            if !(to > next) {
+                break;
+            }
+            let y = self.vectors(to);
+            let (m, _) = self.direction(&y);
+            if self.stays_farther((&x, n), (&y, m)) {
+                (self.at, self.stride) = (to, (to - t) * 4.0);
+                return if to >= end { Some(Advanced::Apart) } else { None };
+            }
+            self.stride = (to - t) * 0.25;
+        }
+        (self.at, self.stride) = (next, self.stride.max((next - t) * 4.0));
         None
+    }
+
+    /// Whether all control vectors stay farther than the separation and their radii along a direction
+    /// that turns from the first to the second, between the times of both. As
+    /// [`Hull::stays_farther`]: each of them has its own distance.
+    #[inline(always)]
+    fn stays_farther(
+        &self,
+        (x, n): (&[Vec3<f64>; 4], Vec3<f64>),
+        (y, m): (&[Vec3<f64>; 4], Vec3<f64>),
+    ) -> bool {
+        let mut farther = true;
+        for k in 0..4 {
+            let (first, last) = (self.need(n, k), self.need(m, k));
+            let middle = (first + last) * f64::INCLUSION_UP;
+            farther &= (n.dot(x[k]) > first) & (m.dot(y[k]) > last) & (n.dot(y[k]) + m.dot(x[k]) > middle);
+        }
+        farther
+    }
+
+    /// Least computed product of control vector `k` with `n` that proves it farther along `n` than the
+    /// separation and its radius. As [`Hull::need`].
+    #[inline(always)]
+    fn need(&self, n: Vec3<f64>, k: usize) -> f64 {
+        let length = Real::sqrt(n.dot(n)) * f64::INCLUSION_UP;
+        let error = sum(n) * (f64::ADVANCE_POINT * self.hull.reach + f64::ISOLATE_UNDERFLOW);
+        let over = (self.separation + self.radii[k]) * f64::INCLUSION_UP + f64::ISOLATE_UNDERFLOW;
+        (over * length + error) * f64::INCLUSION_UP
     }
 
     /// Whether a later time is certain; nothing is before `from`.
@@ -210,12 +258,9 @@ impl Uneven {
     /// radii. `None` if they are not even at the time of `x`. As [`Hull::until`].
     #[inline(always)]
     fn until(&self, x: &[Vec3<f64>; 4], n: Vec3<f64>) -> Option<f64> {
-        let length = Real::sqrt(n.dot(n)) * f64::INCLUSION_UP;
-        let error = sum(n) * (f64::ADVANCE_POINT * self.hull.reach + f64::ISOLATE_UNDERFLOW);
         let (mut next, mut is_farther) = (f64::NEVER, true);
         for k in 0..4 {
-            let over = (self.separation + self.radii[k]) * f64::INCLUSION_UP + f64::ISOLATE_UNDERFLOW;
-            let need = (over * length + error) * f64::INCLUSION_UP;
+            let need = self.need(n, k);
             let (start, end) = (n.dot(self.hull.w[k][0]) - need, n.dot(self.hull.w[k][1]) - need);
             let reaches = !(end > 0.0);
             is_farther &= (n.dot(x[k]) > need) & (!reaches | (start > 0.0));

@@ -82,17 +82,25 @@ impl<R: Real, const TRIANGLE: bool> RowMap for ThickFilter<R, TRIANGLE> {
 fn within<const TRIANGLE: bool>(of: [Vec3<f64>; 3], radii: [f64; 4], distance: f64) -> Option<Near> {
     let Scaled { reach, found, up, down } = Scaled::of::<TRIANGLE>(of);
     let (distance, radii) = (distance * up, radii.map(|radius| radius * up));
-    let shortest = Real::sqrt(found.squared);
-    let range = Radii::new::<TRIANGLE>(radii).of_nearest::<TRIANGLE>(of.map(|v| v * up), reach, shortest);
-    let most = (distance + range.most + DISTANCE_ERROR * reach) * DISTANCE_UP;
-    if found.squared > most * most {
-        return None;
+    let is_beyond = |range: &Range| {
+        let most = (distance + range.most + DISTANCE_ERROR * reach) * DISTANCE_UP;
+        found.squared > most * most
+    };
+    let is_certain = |range: &Range| {
+        let least = (distance + range.least - DISTANCE_CERTAIN * reach) * (2.0 - DISTANCE_UP);
+        least > 0.0 && found.squared <= least * least
+    };
+    let radii = Radii::new::<TRIANGLE>(radii);
+    // Corners decide all pairs of one radius, and many of several.
+    let mut range = radii.range;
+    if !is_beyond(&range) && !is_certain(&range) {
+        let shortest = Real::sqrt(found.squared);
+        range = radii.of_nearest::<TRIANGLE>(of.map(|v| v * up), reach, shortest);
     }
-    let least = (distance + range.least - DISTANCE_CERTAIN * reach) * (2.0 - DISTANCE_UP);
-    Some(Near {
+    (!is_beyond(&range)).then(|| Near {
         squared: found.squared * down * down,
         at: found.at,
-        certain: least > 0.0 && found.squared <= least * least,
+        certain: is_certain(&range),
     })
 }
 

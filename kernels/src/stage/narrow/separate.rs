@@ -195,11 +195,13 @@ impl Thick {
 }
 
 /// All pairs of both lists.
+#[inline(always)]
 pub fn separate<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
     each::<R, B, Double>(block, args);
 }
 
 /// All pairs of both lists, of vertices with a thickness.
+#[inline(always)]
 pub fn thick<R: Real, B: Block>(block: &mut B, args: &ThickRungArgs<R>) {
     each::<R, B, Thick>(block, args);
 }
