@@ -267,7 +267,8 @@ in_motion! {
 
 /// Query for features within a distance at t = 0. Answer: NearPairs.
 ///
-/// - `distance`: a length above 0, in the unit of the vertices. No pair within it is missed.
+/// - `distance`: a length above 0, in the unit of the vertices. No pair within it is missed. It may be
+///   0 if a body has a thickness.
 ///
 /// A pair is a vertex and a face, or two edges. Features with a common vertex are left out.
 #[pyclass(module = "nearmiss", frozen, extends = Query)]

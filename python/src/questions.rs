@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 impl Detector {
     /// Return features within a distance at t = 0: the answer to Near.
     ///
-    /// - `distance`: a length above 0, in the unit of the vertices.
+    /// - `distance`: a length above 0, in the unit of the vertices. It may be 0 if a body has a thickness.
     fn near<'py>(&self, py: Python<'py>, distance: f64) -> Answered<'py> {
         self.answer_to(py, near(distance)?)
     }

@@ -28,8 +28,8 @@ def geometry(query):
 
 
 REFUSED = [
-    (lambda: nm.Near(0), nm.InvalidArgumentError, "distance must be finite and above 0, got 0"),
-    (lambda: nm.Near(np.nan), nm.InvalidArgumentError, "distance must be finite and above 0, got NaN"),
+    (lambda: nm.Near(-1), nm.InvalidArgumentError, "distance must be finite and at least 0, got -1"),
+    (lambda: nm.Near(np.nan), nm.InvalidArgumentError, "distance must be finite and at least 0, got NaN"),
     (lambda: nm.BodyPairs(first=0), nm.InvalidArgumentError, "first must be an integer from 1"),
     (lambda: nm.BodyDistances(-1), nm.InvalidArgumentError, "distance must be finite and at least 0, got -1"),
     (lambda: nm.BodyDistances(np.inf), nm.InvalidArgumentError, "distance must be finite and at least 0, got inf"),
@@ -66,7 +66,7 @@ REFUSED = [
     (lambda: nm.Earliest(tolerance=np.nan), nm.InvalidArgumentError, "tolerance must be finite and at least 0, got NaN"),
     (lambda: detector().continuous(tolerance=-1), nm.InvalidArgumentError, "tolerance must be finite and at least 0, got -1"),
     (lambda: nm.Continuous(min_separation=np.inf), nm.InvalidArgumentError, "min_separation must be finite and at least 0, got inf"),
-    (lambda: detector().near(0), nm.InvalidArgumentError, "distance must be finite and above 0, got 0"),
+    (lambda: detector().near(0), nm.InvalidArgumentError, "distance must be above 0, got 0, as no body has a thickness"),
     (lambda: nm.Device(gpu=-1), nm.InvalidArgumentError, "gpu must be an integer from 0"),
     (lambda: nm.Device("cuda", threads=2), nm.InvalidArgumentError, 'backend "cuda" takes no threads'),
     (lambda: nm.Device("cpu", threads=0), nm.InvalidArgumentError, "threads must be an integer from 1 to 1024, got 0"),

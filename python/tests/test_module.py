@@ -75,7 +75,7 @@ def test_a_body_is_made_again(kind):
     vertices, faces = sheet(4, lambda x, y: np.sin(9 * x))
     own = None if kind == "fixed" else True
     there = made_of(THERE) if kind == "rigid" else None
-    choices = dict(kind=kind, self_collision=own, environment=3, group=5, mask=~2, name="a rag", pose=there)
+    choices = dict(kind=kind, self_collision=own, environment=3, group=5, mask=~2, name="a rag", pose=there, thickness=0.25)
     for points in [vertices, vertices.astype(float) / 3]:
         body = nm.Body(points, faces, **choices)
         for other in [copy.deepcopy(body), pickle.loads(pickle.dumps(body))]:

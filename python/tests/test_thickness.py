@@ -17,7 +17,7 @@ def detector(below, above, height=1.0):
         nm.Body(LOW, FACES, name="low", thickness=below),
         nm.Body(LOW + [0, 0, height], FACES, name="high", thickness=above),
     )
-    return nm.Detector(scene, CPU)
+    return nm.Detector(scene, device=CPU)
 
 
 def rows(answer):
@@ -45,10 +45,10 @@ def test_a_step_ends_at_the_thickness():
     scene = nm.Scene(
         nm.Body(LOW, FACES, name="low", kind="fixed"), nm.Body(LOW + [0, 0, 2.0], FACES, name="high", thickness=0.5)
     )
-    own = nm.Detector(scene, CPU)
+    own = nm.Detector(scene, device=CPU)
     own.update({"high": (LOW + [0, 0, 2.0], LOW + [0, 0, 0.25])})
     with pytest.raises(nm.InvalidArgumentError, match="no thickness"):
-        nm.Detector(nm.Scene(nm.Body(LOW, FACES), nm.Body(LOW, FACES), nm.Body(LOW, FACES, thickness=1.0)), CPU).earliest()
+        nm.Detector(nm.Scene(nm.Body(LOW, FACES), nm.Body(LOW, FACES), nm.Body(LOW, FACES, thickness=1.0)), device=CPU).earliest()
     first = own.earliest()
     assert first.toi == pytest.approx(1.5 / 1.75, abs=1e-3) and first.toi <= 1.5 / 1.75
     assert own.earliest(min_separation=0.25).toi == pytest.approx(1.25 / 1.75, abs=1e-3)

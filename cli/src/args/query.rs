@@ -82,7 +82,7 @@ pub struct QueryArgs {
     pub scene: Option<String>,
     /// Set the triangles of the generated scene [default: its own]
     #[arg(long, requires = "scene", value_name = "N", allow_negative_numbers = true,
-        value_parser = whole::<usize>(0, u64::MAX))]
+        hide_short_help = true, value_parser = whole::<usize>(0, u64::MAX))]
     pub triangles: Option<usize>,
     /// Choose the random numbers of the generated scene
     #[arg(long, default_value_t = 1, requires = "scene", value_name = "N", allow_negative_numbers = true,

@@ -120,6 +120,7 @@ fn every_option_changes_something_or_is_refused() {
         ("detect", still.clone(), no.clone(), vec!["--continuous"]),
         ("detect", scene.clone(), no.clone(), vec!["--earliest"]),
         ("detect", scene.clone(), no.clone(), vec!["--near", "0.01"]),
+        ("detect", scene.clone(), vec!["--near", "0.01"], vec!["--near", "0.01", "--thickness", "0.05"]),
         ("detect", vec![&t0, "--with", &other, "--json"], no.clone(), vec!["--distance"]),
         ("detect", vec![&t0, "--with", &other, "--json"], no.clone(), vec!["--body-pairs"]),
         ("detect", vec![&t0, "--with", &other, "--json"], vec!["--distance"], vec!["--body-distances", "9"]),

@@ -8,7 +8,7 @@ fn numbers_below_zero_reach_the_checks() {
     for (option, said) in [
         ("--tolerance", "tolerance must be finite and at least 0, got -"),
         ("--min-separation", "minimum separation must be finite and at least 0, got -"),
-        ("--near", "distance must be finite and above 0, got -"),
+        ("--near", "distance must be finite and at least 0, got -"),
     ] {
         for number in ["-3e-5", "-1", "-0.5", "-1e300", "-inf", "-.5"] {
             let joined = format!("{option}={number}");

@@ -434,7 +434,8 @@ class Earliest(Query["FirstContact"]):
 class Near(Query["NearPairs"]):
     """Query for features within a distance at t = 0. Answer: NearPairs.
 
-    - `distance`: a length above 0, in the unit of the vertices. No pair within it is missed.
+    - `distance`: a length above 0, in the unit of the vertices. No pair within it is missed. It may be
+      0 if a body has a thickness.
 
     A pair is a vertex and a face, or two edges. Features with a common vertex are left out.
     """
@@ -1014,7 +1015,7 @@ class Detector:
     def near(self, distance: float) -> NearPairs:
         """Return features within a distance at t = 0: the answer to Near.
 
-        - `distance`: a length above 0, in the unit of the vertices.
+        - `distance`: a length above 0, in the unit of the vertices. It may be 0 if a body has a thickness.
         """
 
     def discrete(self, *, adjacent: bool = False, only_crossing: bool = False) -> TrianglePairs:
