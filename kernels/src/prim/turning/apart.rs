@@ -22,7 +22,7 @@
 //!
 //! # Windows
 //!
-//! The first ones are so short that both bodies together turn by at most [`TURN`] in one. A window
+//! The first ones are so short that both bodies together turn by at most `TURN` in one. A window
 //! in which the first directions leave a test is halved, twice at most. Only in the shortest are
 //! all directions tried. Behind a window the next is as long as its place allows. Times are
 //! multiples of a power of two, so they are exact.
