@@ -100,9 +100,10 @@ impl Body {
     /// Sets the thickness: a radius, or one for each vertex.
     ///
     /// ```
-    /// use nearmiss::{Body, Mesh};
+    /// use nearmiss::{Body, Mesh, mesh::Positions};
     ///
-    /// let mesh = Mesh::new("sheet", vec![[0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]])?;
+    /// let positions = Positions::F32(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+    /// let mesh = Mesh::new("sheet", positions, vec![[0, 1, 2]])?;
     /// let sheet = Body::deformable(mesh).with_thickness(0.01);
     /// assert_eq!(sheet.thickness().largest(), 0.01);
     /// # Ok::<(), nearmiss::Error>(())

@@ -248,6 +248,8 @@ fn scenes() -> Vec<(Vec<Body>, f64)> {
         (vec![thick(doubled(&scene::draped(100).expect("a scene")), 0.125, 2)], 0.0625),
         (vec![soup(30, 6).with_thickness(0.05), thick(doubled(&soup(40, 9)), 0.1, 3)], 0.0),
         (vec![soup(30, 6), thick(soup(40, 9), 0.1, 4)], 0.02),
+        // Volumes of fixed bodies are fitted once, with their thickness.
+        (vec![thick(soup(40, 9), 0.05, 5), thick(Body::fixed(soup(30, 6).frames().remove(0)), 0.1, 6)], 0.0),
     ]
 }
 
