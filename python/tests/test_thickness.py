@@ -36,8 +36,8 @@ def test_one_radius_a_body_is_a_longer_distance():
 def test_a_radius_of_a_vertex_counts_at_its_points_alone():
     found = detector(0.25, np.array([0.25, 0.25, 0.75], np.float32)).near(0)
     # Both vertices 2, and both edges that end there, which have the numbers 1 and 2.
-    vertices = [(nm.Kind.VF, bodies, 2, 0) for bodies in ([0, 1], [1, 0])]
-    assert rows(found) == vertices + [(nm.Kind.EE, [0, 1], a, b) for a in (1, 2) for b in (1, 2)]
+    vertices = [(nm.Kind.VERTEX_FACE, bodies, 2, 0) for bodies in ([0, 1], [1, 0])]
+    assert rows(found) == vertices + [(nm.Kind.EDGE_EDGE, [0, 1], a, b) for a in (1, 2) for b in (1, 2)]
     assert len(detector(0.25, 0.75).near(0)) == 15
 
 
