@@ -26,11 +26,11 @@ fn placed(body: &Body, at: impl Fn([f64; 3]) -> [f64; 3], single: bool) -> Body 
 }
 
 /// In doubles that f32 does not hold.
-fn turned(body: &Body) -> Body {
+pub(super) fn turned(body: &Body) -> Body {
     placed(body, |[x, y, z]| [0.6 * x - 0.8 * y, 0.8 * x + 0.6 * y, z + x / 3.0], false)
 }
 
-fn soup(n: usize, seed: u64) -> Body {
+pub(super) fn soup(n: usize, seed: u64) -> Body {
     scene::soup(n, seed, false).expect("a scene")
 }
 
@@ -70,27 +70,31 @@ fn all_that_is_within_the_distance_is_listed() {
     }
 }
 
+/// Asserts the same rows for every way, and the same fingerprints on every machine.
+pub(super) fn assert_same_everywhere(bodies: &[Body], query: Query) {
+    let truth = ask(engine(), bodies.to_vec(), query);
+    for way in ways(query) {
+        assert_eq!(ask(engine(), bodies.to_vec(), way).rows, truth.rows, "{way:?}");
+    }
+    let print = |device| {
+        let bodies = judged(bodies.to_vec());
+        let mut detector = OneQuery::new(device, bodies, query).expect("a detector");
+        let all = detector.detect().expect("an answer");
+        detector.check_volumes().expect("sound trees");
+        (all.hash(), detector.fingerprints().expect("prints"))
+    };
+    let on_engine = print(engine());
+    assert_eq!(on_engine.0, truth.hash());
+    for device in machines() {
+        let name = device.name();
+        assert_eq!(print(device), on_engine, "{name}");
+    }
+}
+
 #[test]
 fn every_way_and_every_machine_finds_the_same() {
     for (bodies, distance) in scenes() {
-        let query = Query::near(distance);
-        let truth = ask(engine(), bodies.clone(), query);
-        for way in ways(query) {
-            assert_eq!(ask(engine(), bodies.clone(), way).rows, truth.rows, "{way:?}");
-        }
-        let print = |device| {
-            let bodies = judged(bodies.clone());
-            let mut detector = OneQuery::new(device, bodies, query).expect("a detector");
-            let all = detector.detect().expect("an answer");
-            detector.check_volumes().expect("sound trees");
-            (all.hash(), detector.fingerprints().expect("prints"))
-        };
-        let on_engine = print(engine());
-        assert_eq!(on_engine.0, truth.hash());
-        for device in machines() {
-            let name = device.name();
-            assert_eq!(print(device), on_engine, "{name}");
-        }
+        assert_same_everywhere(&bodies, Query::near(distance));
     }
 }
 

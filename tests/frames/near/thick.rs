@@ -1,15 +1,15 @@
 //! Features with a thickness: hostile pairs and whole frames, compared with exact fractions.
 
+use super::frame::{assert_same_everywhere, soup, turned};
 use super::hunt::{FAMILIES, family};
 use nearmiss::Query;
 use nearmiss::contacts::{Kind, NearPair};
-use nearmiss::mesh::{Body, Mesh, Positions};
+use nearmiss::mesh::Body;
 use nearmiss_kernels::abi::Point;
 use nearmiss_kernels::exec::RowMap;
 use nearmiss_kernels::math::tolerance::{DISTANCE_ERROR, DISTANCE_TIED, U64};
 use nearmiss_kernels::math::{Real, Vec3, round};
 use nearmiss_kernels::prim::near::{Near, ThickFilter, thick_edge_edge, thick_vertex_face};
-use nearmiss_lab::OneQuery;
 use nearmiss_lab::case::Features;
 use nearmiss_lab::oracle::near::{Places, Shape, all_within};
 use nearmiss_lab::scene;
@@ -19,7 +19,7 @@ use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 use std::collections::BTreeSet;
 use support::judges::near::{Points, reach, shape};
-use support::{ask, ask_scene, engine, judged, machines, ways};
+use support::{ask, ask_scene, engine};
 
 /// Pairs of a family, kind and precision.
 const PAIRS: usize = 100;
@@ -229,15 +229,8 @@ fn uneven(body: &Body, most: f64, seed: u64) -> Vec<f64> {
     (0..body.vertex_count()).map(|_| most * r.random_range(0.0..1.0)).collect()
 }
 
-fn doubled(body: &Body) -> Body {
-    let points = body.positions_t0().to_f64();
-    let turned = points.iter().map(|[x, y, z]| [0.6 * x - 0.8 * y, 0.8 * x + 0.6 * y, z + x / 3.0]).collect();
-    Body::deformable(Mesh::new("turned", Positions::F64(turned), body.faces().to_vec()).expect("a mesh"))
-}
-
 /// Bodies of one and of many radii, alone and with thin ones; in f32 and in f64.
 fn scenes() -> Vec<(Vec<Body>, f64)> {
-    let soup = |n, seed| scene::soup(n, seed, false).expect("a scene");
     let thick = |body: Body, most: f64, seed: u64| {
         let radii = uneven(&body, most, seed);
         body.with_thickness(radii)
@@ -245,8 +238,8 @@ fn scenes() -> Vec<(Vec<Body>, f64)> {
     vec![
         (vec![thick(soup(50, 5), 0.04, 1)], 0.01),
         (vec![soup(50, 5).with_thickness(0.03)], 0.0),
-        (vec![thick(doubled(&scene::draped(100).expect("a scene")), 0.125, 2)], 0.0625),
-        (vec![soup(30, 6).with_thickness(0.05), thick(doubled(&soup(40, 9)), 0.1, 3)], 0.0),
+        (vec![thick(turned(&scene::draped(100).expect("a scene")), 0.125, 2)], 0.0625),
+        (vec![soup(30, 6).with_thickness(0.05), thick(turned(&soup(40, 9)), 0.1, 3)], 0.0),
         (vec![soup(30, 6), thick(soup(40, 9), 0.1, 4)], 0.02),
         // Volumes of fixed bodies are fitted once, with their thickness.
         (vec![thick(soup(40, 9), 0.05, 5), thick(Body::fixed(soup(30, 6).frames().remove(0)), 0.1, 6)], 0.0),
@@ -310,32 +303,14 @@ fn all_that_is_within_both_radii_is_listed() {
 #[test]
 fn every_way_and_every_machine_finds_the_same_with_a_thickness() {
     for (bodies, distance) in scenes() {
-        let query = Query::near(distance);
-        let truth = ask(engine(), bodies.clone(), query);
-        for way in ways(query) {
-            assert_eq!(ask(engine(), bodies.clone(), way).rows, truth.rows, "{way:?}");
-        }
-        let print = |device| {
-            let bodies = judged(bodies.clone());
-            let mut detector = OneQuery::new(device, bodies, query).expect("a detector");
-            let all = detector.detect().expect("an answer");
-            detector.check_volumes().expect("sound trees");
-            (all.hash(), detector.fingerprints().expect("prints"))
-        };
-        let on_engine = print(engine());
-        assert_eq!(on_engine.0, truth.hash());
-        for device in machines() {
-            let name = device.name();
-            assert_eq!(print(device), on_engine, "{name}");
-        }
+        assert_same_everywhere(&bodies, Query::near(distance));
     }
 }
 
 /// One radius for all is a distance that is longer by two of them.
 #[test]
 fn one_radius_is_a_longer_distance() {
-    for body in [scene::soup(60, 7, false).expect("a scene"), doubled(&scene::draped(100).expect("a scene"))]
-    {
+    for body in [scene::soup(60, 7, false).expect("a scene"), turned(&scene::draped(100).expect("a scene"))] {
         let thick = ask(engine(), vec![body.clone().with_thickness(0.0625)], Query::near(0.125));
         let thin = ask(engine(), vec![body], Query::near(0.25));
         assert!(thin.near().len() > 50);
@@ -348,7 +323,7 @@ fn one_radius_is_a_longer_distance() {
 fn exclusions_take_thick_pairs_away() {
     use nearmiss::Scene;
     use nearmiss::scene::Exclusions;
-    let body = doubled(&scene::draped(100).expect("a scene"));
+    let body = turned(&scene::draped(100).expect("a scene"));
     let radii = uneven(&body, 0.125, 2);
     let of = |body: Body, distance: f64, ring: Option<u32>| {
         let mut scene = Scene::new();

@@ -59,7 +59,7 @@ fn they_change_between_frames_and_end_with_their_bodies() {
 #[test]
 fn exclusions_that_cannot_be_are_refused_by_name() {
     let (scene, [cloth, shirt]) = two();
-    let nobody = {
+    let missing = {
         let mut more = scene.clone();
         more.add(scene.bodies()[0].clone())
     };
@@ -73,7 +73,7 @@ fn exclusions_that_cannot_be_are_refused_by_name() {
         Exclusions { rest: Some(RestShape { within, positions }), ..own() }
     };
     let refused: [(BodyId, Exclusions, &str); 9] = [
-        (nobody, ring.clone(), "body 2"),
+        (missing, ring.clone(), "body 2"),
         (
             cloth,
             Exclusions { ring: Some(0), ..own() },
@@ -98,7 +98,7 @@ fn exclusions_that_cannot_be_are_refused_by_name() {
         assert_eq!(detector.detect().expect("an answer").rows, before.rows, "{says}");
     }
     for (bodies, pair, says) in [
-        ([cloth, nobody], [0, 0], "body 2"),
+        ([cloth, missing], [0, 0], "body 2"),
         ([cloth, shirt], [0, 25], "vertex 25 of shirt cannot be excluded: it has 25 vertices"),
         ([cloth, cloth], [7, 7], "(7, 7) of cloth is a vertex with itself"),
     ] {
