@@ -5,7 +5,7 @@ use super::engine::fits;
 use crate::error::Error;
 #[cfg(doc)]
 use crate::scene::Scene;
-use crate::scene::{Body, BodyId, Excluded, Exclusions, Thickness};
+use crate::scene::{Body, BodyId, Exclusions, Thickness};
 
 impl Detector {
     /// Replaces a body by another, of any mesh, under its number, from the next frame on. It keeps
@@ -103,8 +103,13 @@ impl Detector {
     /// # Errors
     /// As of [`Scene::exclude`]. On an error nothing has changed.
     pub fn exclude(&mut self, id: BodyId, exclusions: Exclusions) -> Result<(), Error> {
-        let all = self.scene.with_exclusions(id, exclusions)?;
-        self.set_excluded(all)
+        let own = self.scene.checked_exclusions(id, exclusions)?;
+        if own.as_ref() != self.scene.exclusions(id) {
+            self.download_positions()?;
+            self.scene.excluded.set(id, own);
+            self.changed();
+        }
+        Ok(())
     }
 
     /// Replaces the pairs of vertices of two bodies that are left out, from the next frame on: see
@@ -113,14 +118,10 @@ impl Detector {
     /// # Errors
     /// As of [`Scene::exclude_pairs`]. On an error nothing has changed.
     pub fn exclude_pairs(&mut self, bodies: [BodyId; 2], pairs: &[[u32; 2]]) -> Result<(), Error> {
-        let all = self.scene.with_excluded_pairs(bodies, pairs)?;
-        self.set_excluded(all)
-    }
-
-    fn set_excluded(&mut self, all: Excluded) -> Result<(), Error> {
-        if all != self.scene.excluded {
+        let (key, list) = self.scene.checked_pairs(bodies, pairs)?;
+        if list != self.scene.excluded_pairs(key) {
             self.download_positions()?;
-            self.scene.excluded = all;
+            self.scene.excluded.set_pairs((key, list));
             self.changed();
         }
         Ok(())

@@ -61,6 +61,23 @@ impl Excluded {
         self.bodies.is_empty() && self.pairs.is_empty()
     }
 
+    /// Replaces those of a body by checked ones.
+    pub fn set(&mut self, id: BodyId, own: Option<Exclusions>) {
+        match own {
+            Some(own) => self.bodies.insert(id, own),
+            None => self.bodies.remove(&id),
+        };
+    }
+
+    /// Replaces a list of pairs by a checked one.
+    pub fn set_pairs(&mut self, (key, list): ([BodyId; 2], Vec<[u32; 2]>)) {
+        if list.is_empty() {
+            self.pairs.remove(&key);
+        } else {
+            self.pairs.insert(key, list);
+        }
+    }
+
     /// Takes away what concerns a body.
     pub fn forget(&mut self, id: BodyId) {
         self.bodies.remove(&id);
@@ -80,7 +97,8 @@ impl Scene {
     /// is negative or not finite, a rest shape of another number of vertices, and a face that does
     /// not exist. [`Error::Input`] for a position that no mesh may have. Then nothing has changed.
     pub fn exclude(&mut self, id: BodyId, exclusions: Exclusions) -> Result<(), Error> {
-        self.excluded = self.with_exclusions(id, exclusions)?;
+        let own = self.checked_exclusions(id, exclusions)?;
+        self.excluded.set(id, own);
         Ok(())
     }
 
@@ -98,7 +116,8 @@ impl Scene {
     /// [`Error::InvalidArgument`] for a body that is not in the scene, a vertex that does not exist,
     /// and a vertex with itself. Then nothing has changed.
     pub fn exclude_pairs(&mut self, bodies: [BodyId; 2], pairs: &[[u32; 2]]) -> Result<(), Error> {
-        self.excluded = self.with_excluded_pairs(bodies, pairs)?;
+        let list = self.checked_pairs(bodies, pairs)?;
+        self.excluded.set_pairs(list);
         Ok(())
     }
 
@@ -113,33 +132,31 @@ impl Scene {
         list
     }
 
-    /// The exclusions of the scene with these of a body.
+    /// Checks exclusions of a body, and orders their faces. `None` without any.
     ///
     /// # Errors
     /// As of [`Scene::exclude`].
-    pub(crate) fn with_exclusions(&self, id: BodyId, mut own: Exclusions) -> Result<Excluded, Error> {
+    pub(crate) fn checked_exclusions(
+        &self,
+        id: BodyId,
+        mut own: Exclusions,
+    ) -> Result<Option<Exclusions>, Error> {
         let body = self.one_of(id)?;
         own.faces.sort_unstable();
         own.faces.dedup();
         check(body, &own)?;
-        let mut all = self.excluded.clone();
-        if own == Exclusions::default() {
-            all.bodies.remove(&id);
-        } else {
-            all.bodies.insert(id, own);
-        }
-        Ok(all)
+        Ok((own != Exclusions::default()).then_some(own))
     }
 
-    /// The exclusions of the scene with these pairs of vertices.
+    /// Checks pairs of vertices of two bodies. Returns them as [`Excluded::pairs`] has them.
     ///
     /// # Errors
     /// As of [`Scene::exclude_pairs`].
-    pub(crate) fn with_excluded_pairs(
+    pub(crate) fn checked_pairs(
         &self,
         [a, b]: [BodyId; 2],
         pairs: &[[u32; 2]],
-    ) -> Result<Excluded, Error> {
+    ) -> Result<([BodyId; 2], Vec<[u32; 2]>), Error> {
         let (first, second) = (self.one_of(a)?, self.one_of(b)?);
         for &[p, q] in pairs {
             let sides = [(first, p), (second, q)];
@@ -159,14 +176,7 @@ impl Scene {
         let mut list: Vec<[u32; 2]> = pairs.iter().map(ordered).collect();
         list.sort_unstable();
         list.dedup();
-        let mut all = self.excluded.clone();
-        let key = [a.min(b), a.max(b)];
-        if list.is_empty() {
-            all.pairs.remove(&key);
-        } else {
-            all.pairs.insert(key, list);
-        }
-        Ok(all)
+        Ok(([a.min(b), a.max(b)], list))
     }
 
     /// Refuses a kind of query that does not obey exclusions, if there are any.
