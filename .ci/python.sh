@@ -27,7 +27,7 @@ for library in ipctk coal trimesh libigl; do
     "$folder/user/bin/python" "python/examples/from_$library.py"
 done
 "$folder/user/bin/python" -m mypy --no-error-summary python/tests/typed.py
-"$folder/user/bin/pip" -q install warp-lang jax && { "$folder/user/bin/pip" -q --retries 0 install --index-url https://download.pytorch.org/whl/cpu torch || "$folder/user/bin/pip" -q install torch; }
+"$folder/user/bin/pip" -q install warp-lang jax && { "$folder/user/bin/pip" -q --retries 0 install --index-url https://download.pytorch.org/whl/cpu torch 2>/dev/null || "$folder/user/bin/pip" -q install torch; }
 # As the tests have it: -p would choose other features of what others need, which is a second build.
 cargo build --locked --lib --bins --examples
 NEARMISS_PROGRAM=$target/debug/nearmiss "$folder/user/bin/python" -m pytest -q -rs python
