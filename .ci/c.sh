@@ -50,7 +50,7 @@ compares() {
     "$1.out" >"$1.said" 2>&1 || status=$?
     [ $status = 1 ] && grep -q "the header is not that of the library of another header" "$1.said"
 }
-for program in "$there"/other/{self_intersections.c,on_device.c,cloth.cpp,page.c}; do
+for program in "$there"/other/{self_intersections.c,on_device.c,cloth.cpp,cloth_xpbd.cpp,page.c}; do
     compares "$program" || { echo "${program##*/} does not compare nearmiss_abi() first: $(cat "$program.said")"; exit 1; }
 done
 ! compares "$there/other/planted.c" || { echo "a program that calls before it compares is not noticed"; exit 1; }

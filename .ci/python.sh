@@ -38,6 +38,7 @@ trimesh=trimesh-$("$folder/user/bin/python" -c 'import trimesh; print(trimesh.__
 "$folder/user/bin/pip" -q download --no-binary trimesh --no-deps --dest "$folder" "${trimesh/-/==}"
 tar -xzf "$folder/$trimesh.tar.gz" -C "$folder"
 "$folder/user/bin/python" -m mypy --no-error-summary python/tests/typed.py
+"$folder/user/bin/pip" -q install warp-lang jax && { "$folder/user/bin/pip" -q --retries 0 install --index-url https://download.pytorch.org/whl/cpu torch 2>/dev/null || "$folder/user/bin/pip" -q install torch; }
 # As the tests have it: -p would choose other features of what others need, which is a second build.
 cargo build --locked --lib --bins --examples
 NEARMISS_TRIMESH_TESTS=$folder/$trimesh/tests/test_collision.py NEARMISS_PROGRAM=$target/debug/nearmiss \

@@ -364,3 +364,16 @@ def test_three_queries_of_one_submission(stream):
 def test_the_graph_of_forces_of_the_book(capsys):
     runpy.run_path(str(Path(__file__).parents[1] / "examples" / "graph_of_forces.py"))
     assert 0 < float(capsys.readouterr().out) < 1
+
+
+def test_the_cloth_of_the_book(stream):
+    import cloth_torch
+
+    cells, frames = 20, 400
+    cloth, log, faults = cloth_torch.run(cells, frames, "cuda")
+    assert faults == [] and len(log.crossing) == frames and max(log.limited) > 0
+    on_cpu = cloth_torch.Cloth(cells, "cpu")
+    again = cloth_torch.Cloth(cells, "cuda", stream)
+    for _ in range(15):
+        assert on_cpu.frame()[1] == again.frame()[1] == 0
+    assert torch.allclose(on_cpu.x, again.x.cpu(), atol=1e-9)
