@@ -9,16 +9,13 @@ use std::path::Path;
 pub struct Reader {
     /// Whether a note is an error.
     pub strict: bool,
+    /// Whether frames that cannot be read are passed over.
+    pub keep_going: bool,
     /// The notes so far, a sentence each.
     pub notes: Vec<String>,
 }
 
 impl Reader {
-    /// A reader that refuses what it would note.
-    pub fn new(strict: bool) -> Reader {
-        Reader { strict, notes: Vec::new() }
-    }
-
     /// A mesh.
     ///
     /// # Errors

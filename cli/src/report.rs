@@ -3,6 +3,7 @@
 use crate::detect::Places;
 use crate::output::{Target, unpacked};
 use crate::rows::{Columns, JsonRows};
+use crate::sequence::Moment;
 use crate::vtp::Vtp;
 use nearmiss::contacts::{Contact, Contacts, Kind, Rows, TrianglePair};
 use nearmiss::error::Error;
@@ -17,9 +18,13 @@ use std::path::Path;
 /// The summary of an answer.
 #[derive(Serialize)]
 pub struct Report {
-    /// The step or frame of a sequence, from 0.
+    /// The step or frame of a sequence.
+    #[serde(flatten)]
+    pub moment: Option<Moment>,
+    /// Triangle pairs that share a point in the frame of a sequence, for queries at rest whose rows do
+    /// not show it.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub step: Option<usize>,
+    pub crossing: Option<u64>,
     /// Its figures.
     #[serde(flatten)]
     pub summary: Summary,
@@ -125,7 +130,7 @@ pub fn write(
     let named = faces.map(|faces| faces.name(&contacts.rows));
     let answer = named.as_ref().unwrap_or(&contacts.rows);
     let geometry = places.map(|places| &places.geometry);
-    let columns = Columns { step: None, names, faces: faces.is_some(), geometry };
+    let columns = Columns { moment: None, has_reason: false, names, faces: faces.is_some(), geometry };
     target.write(|out| match format {
         Format::Csv => {
             let mut csv = csv::Writer::from_writer(out);

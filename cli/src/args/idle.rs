@@ -15,7 +15,12 @@ use nearmiss_lab::scene::{ANIMATIONS, SEEDED};
 pub fn check(command: &Command, own: &ArgMatches) -> Result<(), Error> {
     let given = CommandLine(own);
     match command {
-        Command::Detect(args) => detect(args, given),
+        Command::Detect(args) => {
+            if args.out.out_mesh.is_none() {
+                given.none_of(&["heat"], "no mesh is coloured", "remove it, or add --out-mesh FILE")?;
+            }
+            detect(args, given)
+        }
         Command::Picture(args) => picture(&args.detect, given),
         Command::Explain(args) => explain(args, given),
         Command::Lab(lab) => match &lab.command {
@@ -26,6 +31,12 @@ pub fn check(command: &Command, own: &ArgMatches) -> Result<(), Error> {
             Lab::Bench(args) => machine(&args.machine, given),
             Lab::Turns(_) => Ok(()),
         },
+        Command::Check(args) => {
+            if args.meshes.len() == 1 {
+                given.none_of(&["each"], "there is one mesh", "remove it")?;
+            }
+            machine(&args.machine, given)
+        }
         Command::Selftest(_) | Command::Completions(_) | Command::Man(_) => Ok(()),
     }
 }
@@ -124,13 +135,25 @@ fn of_generated(scene: &str, given: CommandLine) -> Result<(), Error> {
 }
 
 fn plan(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
-    let idle = ["repeat", "only", "out", "verbose", "geometry", "out_mesh", "rebuild", "rebuild_every"];
+    let idle = [
+        "repeat",
+        "only",
+        "out",
+        "verbose",
+        "geometry",
+        "out_mesh",
+        "rebuild",
+        "rebuild_every",
+        "heat",
+        "fail_on",
+        "keep_going",
+    ];
     given.none_of(&idle, "a plan shows the costs of one frame", "remove it, or use detect")?;
     detect(args, given)
 }
 
 fn picture(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
-    let why = "a picture shows one frame";
+    let why = "a picture shows a frame";
     given.none_of(&super::picture::IDLE, why, "remove it, or use detect")?;
     detect(args, given)
 }

@@ -2,11 +2,15 @@
 
 mod bench;
 mod caveats;
+mod check;
+mod check_known;
 mod distance;
 mod earliest;
 mod effects;
 mod explain;
 mod faces;
+mod film;
+mod film_pictures;
 mod idle;
 #[cfg(unix)]
 mod interrupted;
