@@ -56,6 +56,9 @@ pub fn write(target: Target, painted: &Painted) -> Result<(), Error> {
 /// # Errors
 /// [`Error::InvalidArgument`].
 pub fn check(path: &Path) -> Result<(), Error> {
+    if crate::output::is_stdout(path) {
+        return Ok(());
+    }
     match crate::output::unpacked(path).extension().and_then(|e| e.to_str()) {
         Some("ply") => Ok(()),
         _ => Err(Error::InvalidArgument {

@@ -1,7 +1,7 @@
 //! Results as files: CSV, JSON and VTP.
 
 use crate::detect::Places;
-use crate::output::{Target, unpacked};
+use crate::output::{Target, is_stdout, unpacked};
 use crate::rows::{Columns, JsonRows};
 use crate::sequence::Moment;
 use crate::vtp::Vtp;
@@ -101,6 +101,7 @@ impl Format {
     /// [`Error::InvalidArgument`] with the known ones.
     pub fn of(path: &Path) -> Result<Format, Error> {
         match unpacked(path).extension().and_then(|e| e.to_str()) {
+            _ if is_stdout(path) => Ok(Format::Csv),
             Some("csv") => Ok(Format::Csv),
             Some("json") => Ok(Format::Json),
             Some("vtp") => Ok(Format::Vtp),

@@ -108,7 +108,7 @@ fn valid_files() -> Vec<(Format, Vec<u8>)> {
     big.extend([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 3, 0, 1, 2, 0, 4, 2, 1, 0, 0]);
     let strips = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
                   element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n\
-                  6 0 1 2 -1 3 2 1\n";
+                  7 0 1 2 -1 3 2 1\n";
     let off =
         "# by hand\nCOFF 4 3 0\n0 0 0 1 0 0\n1 0 0\n0 1 0.1 # c\n0 0 1e3\n3 0 1 2 0.5\n4 0 1 2 3\n2 0 1\n";
     let stl = "solid a b\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 .1\nendloop\nendfacet\n\

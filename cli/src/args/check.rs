@@ -1,6 +1,6 @@
 //! The arguments of `check`.
 
-use super::number::whole;
+use super::number::{some, whole};
 use super::{MachineArgs, OUTPUT, QUERY};
 use clap::Args;
 use std::path::PathBuf;
@@ -24,6 +24,10 @@ pub struct CheckArgs {
     /// Refuse a file with parts that would be skipped or repaired
     #[arg(long, help_heading = QUERY)]
     pub strict: bool,
+    /// List the first N problems of a file that cannot be read
+    #[arg(long, value_name = "N", default_value_t = 20, allow_negative_numbers = true, help_heading = OUTPUT,
+        value_parser = some::<usize>())]
+    pub problems: usize,
     /// List the first N of everything
     #[arg(long, value_name = "N", default_value_t = 10, allow_negative_numbers = true, help_heading = OUTPUT,
         value_parser = whole::<usize>(0, u64::MAX))]

@@ -2,11 +2,13 @@
 
 use super::research::TraversalArg;
 use super::{Command, DetectArgs, ExplainArgs, Lab, MachineArgs, SceneArgs, Table, TablesArgs, TradeArgs};
+use crate::output::is_stdout;
 use clap::ArgMatches;
 use clap::parser::ValueSource;
 use nearmiss::device::Backend;
 use nearmiss::error::Error;
 use nearmiss_lab::scene::{ANIMATIONS, SEEDED};
+use std::path::PathBuf;
 
 /// Checks the options of a command.
 ///
@@ -35,6 +37,7 @@ pub fn check(command: &Command, own: &ArgMatches) -> Result<(), Error> {
             if args.meshes.len() == 1 {
                 given.none_of(&["each"], "there is one mesh", "remove it")?;
             }
+            one_output(args.json, [&args.out_mesh, &args.picture])?;
             machine(&args.machine, given)
         }
         Command::Selftest(_) | Command::Completions(_) | Command::Man(_) => Ok(()),
@@ -69,11 +72,23 @@ fn machine(args: &MachineArgs, given: CommandLine) -> Result<(), Error> {
     Ok(())
 }
 
+/// Refuses to print JSON where a file is written.
+fn one_output(json: bool, files: [&Option<PathBuf>; 2]) -> Result<(), Error> {
+    match json && files.into_iter().flatten().any(|file| is_stdout(file)) {
+        true => Err(Error::InvalidArgument {
+            what: "--json cannot be used with a file on standard output (-)".into(),
+            advice: "name a file".into(),
+        }),
+        false => Ok(()),
+    }
+}
+
 /// Options of continuous queries alone.
 const OF_STEPS: [&str; 3] = ["tolerance", "max_iterations", "min_separation"];
 
 fn detect(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
     machine(&args.machine, given)?;
+    one_output(args.out.json, [&args.out.out, &args.out.out_mesh])?;
     let (query, research) = (&args.query, &args.research);
     if research.traversal != Some(TraversalArg::PerLeafSpill) {
         let why = "only the walk per-leaf-spill spills";

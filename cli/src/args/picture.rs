@@ -113,6 +113,7 @@ fn of_picture(option: Arg) -> Arg {
 /// [`Error::InvalidArgument`].
 pub fn check(option: &str, path: &Path) -> Result<(), Error> {
     match path.extension() {
+        _ if crate::output::is_stdout(path) => Ok(()),
         Some(extension) if extension.eq_ignore_ascii_case("png") => Ok(()),
         _ => Err(Error::InvalidArgument {
             what: format!("{option} must end in .png, got {}", path.display()),

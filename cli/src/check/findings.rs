@@ -77,7 +77,7 @@ fn listed<T>(all: impl Iterator<Item = T>, most: usize) -> Listed<T> {
 
 /// A mesh of the report.
 #[derive(Serialize)]
-pub struct MeshTold {
+pub struct MeshReport {
     pub name: String,
     pub faces: usize,
     pub vertices: usize,
@@ -85,21 +85,21 @@ pub struct MeshTold {
 
 /// Two faces, and the meshes that they are of.
 #[derive(Serialize)]
-pub struct PairTold {
+pub struct PairReport {
     pub meshes: [usize; 2],
     pub faces: [u32; 2],
 }
 
 /// A face.
 #[derive(Serialize)]
-pub struct FaceTold {
+pub struct FaceReport {
     pub mesh: usize,
     pub face: u32,
 }
 
 /// An edge, and how many triangles it has.
 #[derive(Serialize)]
-pub struct EdgeTold {
+pub struct EdgeReport {
     pub mesh: usize,
     pub vertices: [u32; 2],
     pub faces: usize,
@@ -107,38 +107,38 @@ pub struct EdgeTold {
 
 /// The report, as JSON has it.
 #[derive(Serialize)]
-pub struct Told {
+pub struct Report {
     /// Whether there is no fault.
     pub free: bool,
-    pub meshes: Vec<MeshTold>,
-    pub crossing: Listed<PairTold>,
+    pub meshes: Vec<MeshReport>,
+    pub crossing: Listed<PairReport>,
     pub clusters: Listed<Cluster>,
-    pub overlapping: Listed<PairTold>,
-    pub touching: Listed<PairTold>,
+    pub overlapping: Listed<PairReport>,
+    pub touching: Listed<PairReport>,
     /// Whether faces that touch are no fault.
     pub touching_allowed: bool,
-    pub duplicate: Listed<PairTold>,
-    pub degenerate: Listed<FaceTold>,
-    pub non_manifold_edges: Listed<EdgeTold>,
-    pub boundary_edges: Listed<EdgeTold>,
+    pub duplicate: Listed<PairReport>,
+    pub degenerate: Listed<FaceReport>,
+    pub non_manifold_edges: Listed<EdgeReport>,
+    pub boundary_edges: Listed<EdgeReport>,
     pub segments: usize,
     pub points: usize,
     pub notes: Vec<String>,
 }
 
-impl Told {
+impl Report {
     /// The report of what is found.
-    pub fn new(found: &Findings, args: &CheckArgs, mut notes: Vec<String>) -> Told {
+    pub fn new(found: &Findings, args: &CheckArgs, mut notes: Vec<String>) -> Report {
         let most = args.first;
-        let pair = |pair: &Pair| PairTold {
+        let pair = |pair: &Pair| PairReport {
             meshes: pair.faces.map(|face| face.mesh),
             faces: pair.faces.map(|face| face.face),
         };
         let all = || found.faults.iter().enumerate();
         let face = |mesh: usize, triangle: &u32| found.faces[mesh][*triangle as usize];
-        let edge = |mesh, edge: &Edge| EdgeTold { mesh, vertices: edge.vertices, faces: edge.faces };
+        let edge = |mesh, edge: &Edge| EdgeReport { mesh, vertices: edge.vertices, faces: edge.faces };
         let duplicate = all().flat_map(|(mesh, own)| {
-            own.duplicate.iter().map(move |pair| PairTold {
+            own.duplicate.iter().map(move |pair| PairReport {
                 meshes: [mesh; 2],
                 faces: [0, 1].map(|side| face(mesh, &pair[side])),
             })
@@ -146,7 +146,7 @@ impl Told {
         let degenerate = all().flat_map(|(mesh, own)| {
             let mut faces: Vec<u32> = own.degenerate.iter().map(|triangle| face(mesh, triangle)).collect();
             faces.dedup();
-            faces.into_iter().map(move |face| FaceTold { mesh, face })
+            faces.into_iter().map(move |face| FaceReport { mesh, face })
         });
         let edges = |of: fn(&Faults) -> &Vec<Edge>| {
             listed(all().flat_map(|(mesh, own)| of(own).iter().map(move |one| edge(mesh, one))), most)
@@ -161,10 +161,10 @@ impl Told {
             );
             notes.push(format!("{share} with another: faces at seams touch; --weld merges them"));
         }
-        let mut told = Told {
+        let mut report = Report {
             free: false,
             meshes: (found.bodies.iter().zip(&found.face_counts))
-                .map(|(body, faces)| MeshTold {
+                .map(|(body, faces)| MeshReport {
                     name: body.name().to_owned(),
                     faces: *faces,
                     vertices: body.vertex_count(),
@@ -183,10 +183,14 @@ impl Told {
             points: found.faults.iter().map(|own| own.points).sum(),
             notes,
         };
-        let touch = if told.touching_allowed { 0 } else { told.touching.count };
-        let faults =
-            [told.crossing.count, told.overlapping.count, told.duplicate.count, told.degenerate.count];
-        told.free = touch == 0 && faults.iter().all(|count| *count == 0);
-        told
+        let touch = if report.touching_allowed { 0 } else { report.touching.count };
+        let faults = [
+            report.crossing.count,
+            report.overlapping.count,
+            report.duplicate.count,
+            report.degenerate.count,
+        ];
+        report.free = touch == 0 && faults.iter().all(|count| *count == 0);
+        report
     }
 }

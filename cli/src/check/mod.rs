@@ -13,7 +13,7 @@ use crate::meshes::Reader;
 use crate::output::{self, Target, print, say};
 use crate::progress::during;
 use crate::{paint, picture};
-use findings::{Findings, Told};
+use findings::{Findings, Report};
 use nearmiss::Discrete;
 use nearmiss::contacts::crossing_curves;
 use nearmiss::error::Error;
@@ -32,10 +32,10 @@ use std::process::ExitCode;
 pub fn check(args: &CheckArgs) -> Result<ExitCode, Error> {
     let mesh = target("--out-mesh", args.out_mesh.as_deref(), &args.meshes, paint::check)?;
     let picture = target("--picture", args.picture.as_deref(), &args.meshes, picture_name)?;
-    let mut reader = Reader { strict: args.strict, ..Reader::default() };
+    let mut reader = Reader { strict: args.strict, problems: args.problems, ..Reader::default() };
     let read = |(at, file): (usize, &PathBuf)| -> Result<(Body, Polygons), Error> {
         let (body, polygons) = body_of(std::slice::from_ref(file), &mut reader)?;
-        let environment = args.each.then_some(at as u32).unwrap_or(0);
+        let environment = if args.each { at as u32 } else { 0 };
         let body = body.with_filter(CollisionFilter::in_environment(environment));
         let (body, merged) = if args.weld { body.weld() } else { (body, 0) };
         if args.weld {
@@ -46,24 +46,19 @@ pub fn check(args: &CheckArgs) -> Result<ExitCode, Error> {
     let read = during("reading", || args.meshes.iter().enumerate().map(read).collect::<Result<Vec<_>, _>>())?;
     let (bodies, polygons): (Vec<Body>, Vec<Polygons>) = read.into_iter().unzip();
     let found = findings(args, Scene::from(bodies), &polygons)?;
-    let painted = match (&mesh, &picture) {
-        (None, None) => None,
-        _ => Some(colours::painted(&found)?),
-    };
-    if let (Some(target), Some(painted)) = (mesh, &painted) {
-        paint::write(target, painted)?;
+    if mesh.is_some() || picture.is_some() {
+        let painted = colours::painted(&found)?;
+        mesh.map_or(Ok(()), |target| paint::write(target, &painted))?;
+        picture.map_or(Ok(()), |target| picture::write(target, &found.bodies, &painted))?;
     }
-    if let (Some(target), Some(painted)) = (picture, &painted) {
-        picture::write(target, &found.bodies, painted)?;
-    }
-    let told = Told::new(&found, args, reader.notes);
+    let report = Report::new(&found, args, reader.notes);
     if args.json {
-        let text = serde_json::to_string(&told).map_err(|e| Error::Bug { what: e.to_string() })?;
+        let text = serde_json::to_string(&report).map_err(|e| Error::Bug { what: e.to_string() })?;
         print(&(text + "\n"))?;
     } else {
-        print(&text::text(&told))?;
+        print(&text::text(&report))?;
     }
-    Ok(if told.free { ExitCode::SUCCESS } else { ExitCode::from(MEETS) })
+    Ok(if report.free { ExitCode::SUCCESS } else { ExitCode::from(MEETS) })
 }
 
 /// A file to write, if it is given.

@@ -1,66 +1,66 @@
 //! The report for people: a verdict, and a line for each kind of fault.
 
-use super::findings::{EdgeTold, FaceTold, Listed, PairTold, Told};
+use super::findings::{EdgeReport, FaceReport, Listed, PairReport, Report};
 use nearmiss::words::counted;
 
 /// The report.
-pub fn text(told: &Told) -> String {
+pub fn text(report: &Report) -> String {
     let mut text = String::new();
-    for mesh in &told.meshes {
+    for mesh in &report.meshes {
         let [faces, vertices] = [mesh.faces, mesh.vertices].map(|count| count as u64);
         let (faces, vertices) = (counted(faces, "face", "faces"), counted(vertices, "vertex", "vertices"));
         text += &format!("{}: {faces}, {vertices}\n", mesh.name);
     }
-    text += &format!("{}\n", verdict(told));
-    let several = told.meshes.len() > 1;
-    let pair = |pair: &PairTold| {
+    text += &format!("{}\n", verdict(report));
+    let several = report.meshes.len() > 1;
+    let pair = |pair: &PairReport| {
         let [a, b] = [0, 1].map(|side| called(several.then_some(pair.meshes[side]), pair.faces[side]));
         format!("{a} and {b}")
     };
-    let face = |face: &FaceTold| called(several.then_some(face.mesh), face.face);
-    let edge = |edge: &EdgeTold| {
+    let face = |face: &FaceReport| called(several.then_some(face.mesh), face.face);
+    let edge = |edge: &EdgeReport| {
         let [a, b] = edge.vertices;
         format!("{}-{b}", called(several.then_some(edge.mesh), a))
     };
     let mut line = |name: &str, found: String| text += &format!("  {name:<14}{found}\n");
     let pairs = ["pair", "pairs"];
-    line("crossing", shown(&told.crossing, pairs, pair));
-    for cluster in &told.clusters.first {
+    line("crossing", shown(&report.crossing, pairs, pair));
+    for cluster in &report.clusters.first {
         let [pairs, faces] = [cluster.pairs, cluster.faces].map(|count| count as u64);
         let (pairs, faces) = (counted(pairs, "pair", "pairs"), counted(faces, "face", "faces"));
         let (low, high) = (place(cluster.low), place(cluster.high));
         line("  cluster", format!("{pairs} of {faces}, from {low} to {high}"));
     }
-    if told.clusters.count > told.clusters.first.len() {
-        let more = (told.clusters.count - told.clusters.first.len()) as u64;
+    if report.clusters.count > report.clusters.first.len() {
+        let more = (report.clusters.count - report.clusters.first.len()) as u64;
         line("", counted(more, "more cluster", "more clusters"));
     }
-    line("overlapping", shown(&told.overlapping, pairs, pair));
-    line("touching", shown(&told.touching, pairs, pair));
-    line("duplicate", shown(&told.duplicate, pairs, pair));
-    line("degenerate", shown(&told.degenerate, ["face", "faces"], face));
-    line("non-manifold", shown(&told.non_manifold_edges, ["edge", "edges"], edge));
-    line("boundary", shown(&told.boundary_edges, ["edge", "edges"], edge));
-    if told.segments + told.points > 0 {
-        let [segments, points] = [told.segments, told.points].map(|count| count as u64);
+    line("overlapping", shown(&report.overlapping, pairs, pair));
+    line("touching", shown(&report.touching, pairs, pair));
+    line("duplicate", shown(&report.duplicate, pairs, pair));
+    line("degenerate", shown(&report.degenerate, ["face", "faces"], face));
+    line("non-manifold", shown(&report.non_manifold_edges, ["edge", "edges"], edge));
+    line("boundary", shown(&report.boundary_edges, ["edge", "edges"], edge));
+    if report.segments + report.points > 0 {
+        let [segments, points] = [report.segments, report.points].map(|count| count as u64);
         line(
             "rods",
             format!("{}, {}", counted(segments, "segment", "segments"), counted(points, "point", "points")),
         );
     }
-    told.notes.iter().for_each(|note| text += &format!("  note: {note}\n"));
+    report.notes.iter().for_each(|note| text += &format!("  note: {note}\n"));
     text
 }
 
 /// Whether the meshes are free, and else why not.
-fn verdict(told: &Told) -> String {
-    let touch = if told.touching_allowed { 0 } else { told.touching.count };
+fn verdict(report: &Report) -> String {
+    let touch = if report.touching_allowed { 0 } else { report.touching.count };
     let faults = [
-        (told.crossing.count, "crossing pair", "crossing pairs"),
-        (told.overlapping.count, "overlapping pair", "overlapping pairs"),
+        (report.crossing.count, "crossing pair", "crossing pairs"),
+        (report.overlapping.count, "overlapping pair", "overlapping pairs"),
         (touch, "touching pair", "touching pairs"),
-        (told.duplicate.count, "duplicate face", "duplicate faces"),
-        (told.degenerate.count, "degenerate face", "degenerate faces"),
+        (report.duplicate.count, "duplicate face", "duplicate faces"),
+        (report.degenerate.count, "degenerate face", "degenerate faces"),
     ];
     let found: Vec<String> = faults
         .iter()

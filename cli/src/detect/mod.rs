@@ -75,8 +75,12 @@ pub fn question(args: &DetectArgs) -> Result<Question, Error> {
         let steps = if frames < 3 { 1 } else { Sequence::steps_of(frames, query.kind().is_at_rest()) };
         steps::check(args, steps)?;
     }
-    let mut reader =
-        Reader { strict: args.query.strict, keep_going: args.query.keep_going, ..Reader::default() };
+    let mut reader = Reader {
+        strict: args.query.strict,
+        keep_going: args.query.keep_going,
+        problems: args.query.problems,
+        ..Reader::default()
+    };
     if is_read && let Some(all) = during("reading", || Sequence::of(args, &mut reader))? {
         let query = args.to_query(all.frames > 1)?;
         steps::check(args, all.steps(query.kind().is_at_rest()))?;

@@ -1,4 +1,4 @@
-//! What a sequence prints: a line for each step, and their sum.
+//! The lines of a sequence: one for each step, and their sum.
 
 use super::film::Moment;
 use crate::detect::text;

@@ -135,7 +135,7 @@ struct Untested<'a> {
 /// A step in the printed JSON.
 #[derive(Serialize)]
 #[serde(untagged)]
-enum Told {
+enum Printed {
     Tested(Box<Report>),
     Untested {
         #[serde(flatten)]
@@ -156,14 +156,14 @@ impl Steps<'_> {
                 self.pass(&mut out, &moment, reason).map_err(Stop::File)?;
                 self.total.pass();
                 match json {
-                    true => told.push(Told::Untested { moment, reason: reason.into() }),
+                    true => told.push(Printed::Untested { moment, reason: reason.into() }),
                     false => print(&untested(&moment, at_rest, reason))?,
                 }
                 continue;
             }
             let report = self.step(&moment, &mut out, mesh)?;
             if json {
-                told.push(Told::Tested(Box::new(report)));
+                told.push(Printed::Tested(Box::new(report)));
             } else {
                 let verbose = self.args.out.verbose;
                 let is_first = verbose && self.total.is_first();
@@ -181,7 +181,7 @@ impl Steps<'_> {
         if json {
             #[derive(Serialize)]
             struct All {
-                steps: Vec<Told>,
+                steps: Vec<Printed>,
             }
             let text = serde_json::to_string(&All { steps: told });
             let text = text.map_err(|e| Error::Bug { what: e.to_string() })?;

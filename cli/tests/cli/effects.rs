@@ -94,6 +94,7 @@ fn every_option_changes_something_or_is_refused() {
     let other = folder.path("soup_t0.ply");
     let quads = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .2 .2 -1\nv .3 .2 1\nv .2 .3 1\nf 1 2 3 4\nf 5 6 7\n";
     let quads = folder.write("quads.obj", quads);
+    let torn = folder.write("torn.obj", "v 0 x 0\nv 1 y 0\nv 0 1 0\nf 1 2 3\n");
     let note = folder.write("note.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2\n");
     let seam =
         folder.write("seam.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 4 5 6\n");
@@ -167,6 +168,8 @@ fn every_option_changes_something_or_is_refused() {
         ("detect", vec![&seam, "--json"], no.clone(), vec!["--only-crossing"]),
         ("detect", vec![&seam, "--json"], no.clone(), vec!["--weld"]),
         ("detect", vec![&note, "--json"], no.clone(), vec!["--strict"]),
+        ("detect", vec![&torn], no.clone(), vec!["--problems", "5"]),
+        ("check", vec![&torn], no.clone(), vec!["--problems", "1"]),
         ("detect", vec![&quads, "--out", &csv], no.clone(), vec!["--file-faces"]),
         ("detect", files.clone(), no.clone(), vec!["--out", &csv]),
         ("detect", files.clone(), vec!["--out", &csv], vec!["--out", &json]),

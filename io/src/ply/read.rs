@@ -189,9 +189,11 @@ fn polygons(
                 }
             }
             Item::At(corner) => {
-                if let Some(problem) = index_fault(face, corner, index, vertices) {
-                    return problems.add(problem);
-                }
+                // A corner stays a corner even if it is wrong.
+                let index = match index_fault(face, corner, index, vertices) {
+                    Some(problem) => problems.add(problem).map(|()| 0)?,
+                    None => index,
+                };
                 faces.corner(corner, index as u32); // below 2^32, as every whole number of PLY
                 if corners < 3 && corner + 1 == corners {
                     faces.leave_out(corners);
