@@ -1,7 +1,8 @@
-//! The program: `detect`, `explain`, `picture`, `selftest`, `completions`, `man`; and `lab` for
+//! The program: `detect`, `check`, `explain`, `picture`, `selftest`, `completions`, `man`; and `lab` for
 //! measurements.
 
 mod args;
+mod check;
 mod detect;
 mod explain;
 mod lab;
@@ -25,7 +26,7 @@ use output::say;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Exit codes: 0 done (contacts or not), 2 bad arguments, 3 bad input, 4 device, memory or output, or
+/// Exit codes: 0 done (contacts or not), 1 a fault that `check` or `--fail-on` looks for, 2 bad arguments, 3 bad input, 4 device, memory or output, or
 /// a check that fails. SIGINT and SIGTERM give 130 and 143.
 fn main() -> ExitCode {
     stop::listen();
@@ -46,6 +47,7 @@ fn main() -> ExitCode {
 fn run(command: Command) -> Result<ExitCode, Error> {
     match command {
         Command::Detect(args) => detect::detect(&args),
+        Command::Check(args) => check::check(&args),
         Command::Explain(args) => explain::explain(&args),
         Command::Picture(args) => picture::picture(&args),
         Command::Selftest(args) => selftest::selftest(&args),

@@ -1,8 +1,9 @@
 //! Results as files: CSV, JSON and VTP.
 
 use crate::detect::Places;
-use crate::output::{Target, unpacked};
+use crate::output::{Target, is_stdout, unpacked};
 use crate::rows::{Columns, JsonRows};
+use crate::sequence::Moment;
 use crate::vtp::Vtp;
 use nearmiss::contacts::{Contact, Contacts, Kind, Rows, TrianglePair};
 use nearmiss::error::Error;
@@ -17,9 +18,13 @@ use std::path::Path;
 /// The summary of an answer.
 #[derive(Serialize)]
 pub struct Report {
-    /// The step or frame of a sequence, from 0.
+    /// The step or frame of a sequence.
+    #[serde(flatten)]
+    pub moment: Option<Moment>,
+    /// Triangle pairs that share a point in the frame of a sequence, for queries at rest whose rows do
+    /// not show it.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub step: Option<usize>,
+    pub crossing: Option<u64>,
     /// Its figures.
     #[serde(flatten)]
     pub summary: Summary,
@@ -96,6 +101,7 @@ impl Format {
     /// [`Error::InvalidArgument`] with the known ones.
     pub fn of(path: &Path) -> Result<Format, Error> {
         match unpacked(path).extension().and_then(|e| e.to_str()) {
+            _ if is_stdout(path) => Ok(Format::Csv),
             Some("csv") => Ok(Format::Csv),
             Some("json") => Ok(Format::Json),
             Some("vtp") => Ok(Format::Vtp),
@@ -125,7 +131,7 @@ pub fn write(
     let named = faces.map(|faces| faces.name(&contacts.rows));
     let answer = named.as_ref().unwrap_or(&contacts.rows);
     let geometry = places.map(|places| &places.geometry);
-    let columns = Columns { step: None, names, faces: faces.is_some(), geometry };
+    let columns = Columns { moment: None, has_reason: false, names, faces: faces.is_some(), geometry };
     target.write(|out| match format {
         Format::Csv => {
             let mut csv = csv::Writer::from_writer(out);

@@ -10,8 +10,10 @@
 //! | distances of bodies | as the nearest triangles |
 //! | the first time | `earliest_toi` |
 //!
-//! Before these are `step` of a sequence, and `body_a`, `body_b` if there are several bodies.
+//! Before these are `step`, `frame` and `file` of a sequence, `reason` with --keep-going, and `body_a`,
+//! `body_b` if there are several bodies.
 
+use crate::sequence::Moment;
 use nearmiss::contacts::{
     Contact, ContactGeometry, Geometry, Kind, NearPair, NearestTriangles, PairGeometry, PairKind, Part, Rows,
     Status, TrianglePair,
@@ -24,7 +26,9 @@ use std::io::Write;
 #[derive(Clone, Copy)]
 pub struct Columns<'a> {
     /// The step of a sequence.
-    pub step: Option<usize>,
+    pub moment: Option<&'a Moment>,
+    /// Whether there is a column for the reason why a step is not tested.
+    pub has_reason: bool,
     /// The names of several bodies.
     pub names: Option<&'a [String]>,
     /// Whether rows name faces of the file instead of triangles.
@@ -34,8 +38,8 @@ pub struct Columns<'a> {
 }
 
 impl Columns<'_> {
-    /// The names of the columns.
-    pub fn head(&self, csv: &mut csv::Writer<impl Write>, answer: &Rows) -> Result<(), String> {
+    /// Writes the names of the columns; returns their number.
+    pub fn head(&self, csv: &mut csv::Writer<impl Write>, answer: &Rows) -> Result<usize, String> {
         let triangles = if self.faces { ["face_a", "face_b"] } else { ["tri_a", "tri_b"] };
         let (own, bodies): (&[&str], bool) = match answer {
             Rows::Pairs(_) => (&triangles, true),
@@ -47,16 +51,38 @@ impl Columns<'_> {
             Rows::Near(_) if self.geometry.is_some() => (&NEAR_AND_GEOMETRY, true),
             Rows::Near(_) => (&NEAR, true),
         };
-        let step = self.step.map(|_| "step");
         let bodies = (bodies && self.names.is_some()).then_some(["body_a", "body_b"]);
-        let all = step.into_iter().chain(bodies.into_iter().flatten()).chain(own.iter().copied());
+        let all = self.before("").map(|(name, _)| name);
+        let all = all.chain(bodies.into_iter().flatten()).chain(own.iter().copied());
         let places: &[&str] = match (self.geometry, answer) {
             (None, _) => &[],
             (Some(_), Rows::Pairs(_)) => &PAIR_GEOMETRY,
             (Some(_), _) => &GEOMETRY,
         };
-        let all = all.chain(places.iter().copied());
-        csv.write_record(all).map_err(|e| e.to_string())
+        let all: Vec<&str> = all.chain(places.iter().copied()).collect();
+        csv.write_record(&all).map_err(|e| e.to_string())?;
+        Ok(all.len())
+    }
+
+    /// The columns of the step, with their names.
+    fn before(&self, reason: &str) -> impl Iterator<Item = (&'static str, String)> {
+        let step = self.moment.map(|moment| ("step", moment.step.to_string()));
+        let frame = self.moment.and_then(|moment| moment.frame).map(|frame| ("frame", frame.to_string()));
+        let file = self.moment.and_then(|moment| moment.file.clone()).map(|file| ("file", file));
+        let reason = self.has_reason.then(|| ("reason", reason.to_owned()));
+        step.into_iter().chain(frame).chain(file).chain(reason)
+    }
+
+    /// A row of a step that is not tested, for a file with so many columns.
+    pub fn untested(
+        &self,
+        csv: &mut csv::Writer<impl Write>,
+        reason: &str,
+        columns: usize,
+    ) -> Result<(), String> {
+        let mut row: Vec<String> = self.before(reason).map(|(_, field)| field).collect();
+        row.resize(columns, String::new());
+        csv.write_record(row).map_err(|e| e.to_string())
     }
 
     /// A row a contact. A number is printed as the shortest decimal that reads back to the same bits.
@@ -71,7 +97,7 @@ impl Columns<'_> {
                 .enumerate()
                 .try_for_each(|(at, c)| self.row(csv, Some(c.bodies), &self.with(at, &contact(c)))),
             // A step without a contact has a row without a time.
-            Rows::Earliest(None) if self.step.is_some() => self.row(csv, None, &[String::new()]),
+            Rows::Earliest(None) if self.moment.is_some() => self.row(csv, None, &[String::new()]),
             Rows::Earliest(toi) => toi.iter().try_for_each(|toi| self.row(csv, None, &[toi.to_string()])),
             Rows::Near(pairs) => pairs.iter().enumerate().try_for_each(|(at, p)| {
                 self.row(csv, Some(p.bodies), &self.with(at, &near(p, self.geometry.is_none())))
@@ -104,9 +130,7 @@ impl Columns<'_> {
         bodies: Option<[BodyId; 2]>,
         own: &[String],
     ) -> csv::Result<()> {
-        if let Some(step) = self.step {
-            csv.write_field(step.to_string())?;
-        }
+        self.before("").try_for_each(|(_, field)| csv.write_field(field))?;
         if let (Some(names), Some(bodies)) = (self.names, bodies) {
             bodies.iter().try_for_each(|body| csv.write_field(&names[body.index()]))?;
         }

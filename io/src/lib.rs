@@ -1,5 +1,5 @@
-//! nearmiss-io: mesh files for [`nearmiss`]. PLY and OBJ are read, also packed by gzip; PLY is
-//! written.
+//! nearmiss-io: mesh files for [`nearmiss`]. PLY, OBJ, STL, OFF and glTF are read, also packed by
+//! gzip; PLY is written.
 //!
 //! [`MeshFile`] is a file as it was read. It has a [`Mesh`](nearmiss::Mesh) of triangles, the faces
 //! of the file ([`Polygons`]), and notes of all parts that differ from the file ([`Note`]).
@@ -23,14 +23,21 @@
 
 mod cut;
 pub mod file;
+mod format;
+mod gltf;
 mod mesh_file;
 mod note;
 mod obj;
+mod off;
 mod ply;
 mod polygons;
+mod problems;
 mod shown;
+mod stl;
+mod welded;
 
-pub use mesh_file::{Format, MeshFile};
+pub use format::Format;
+pub use mesh_file::MeshFile;
 pub use note::{Note, Treated};
 pub use ply::{encode_ply, encode_ply_coloured, write_ply};
 pub use polygons::Polygons;

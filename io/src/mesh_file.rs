@@ -1,39 +1,15 @@
 //! Mesh files: opening, the choice of the reader, and the parts of a file that are not in its mesh.
 
-use crate::file::{self, encoding, is_packed};
+use crate::file::{self, encoding};
+use crate::format::Format;
 use crate::note::{Note, Notes, Treated};
 use crate::polygons::{Fans, Polygons};
-use crate::{cut, obj, ply};
+use crate::problems::{Problems, wrong};
+use crate::shown::shown;
+use crate::{cut, gltf, obj, off, ply, stl};
 use nearmiss::Error;
 use nearmiss::mesh::{Mesh, Positions, Problem};
 use std::path::Path;
-
-/// The formats that are read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
-    /// Stanford PLY: ascii, binary little-endian or big-endian.
-    Ply,
-    /// Wavefront OBJ: `v` and `f`. Other keywords of the format are skipped; [`MeshFile::notes`]
-    /// counts all else.
-    Obj,
-}
-
-impl Format {
-    /// The format of an extension in any case; `.ply.gz` is PLY.
-    ///
-    /// # Errors
-    /// [`Problem::UnknownExtension`].
-    pub fn of(path: &Path) -> Result<Format, Problem> {
-        let inner = is_packed(path).then(|| path.with_extension(""));
-        let path = inner.as_deref().unwrap_or(path);
-        let found = path.extension().unwrap_or_default().to_string_lossy();
-        match found.to_ascii_lowercase().as_str() {
-            "ply" => Ok(Format::Ply),
-            "obj" => Ok(Format::Obj),
-            _ => Err(Problem::UnknownExtension { found: found.into_owned() }),
-        }
-    }
-}
 
 /// A mesh file as it was read: a mesh, the faces of the file, and notes.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,7 +20,7 @@ pub struct MeshFile {
 }
 
 impl MeshFile {
-    /// Reads a `.ply` or `.obj` file, also with `.gz` after the name.
+    /// Reads a `.ply`, `.obj`, `.stl`, `.off`, `.gltf` or `.glb` file, also with `.gz` after the name.
     ///
     /// A polygon of n corners becomes n - 2 triangles, in file order; [`MeshFile::file_face`]
     /// returns the face of a triangle. It is projected along the axis of its normal's largest
@@ -73,7 +49,75 @@ impl MeshFile {
     /// [`Error::OutOfMemory`] for a file that is too large for the memory.
     pub fn read(path: &Path) -> Result<MeshFile, Error> {
         let (file, format, bytes) = open(path)?;
-        MeshFile::parse(file, format, &bytes)
+        MeshFile::cut(fans((file, format, &bytes), &next_to(path), &mut Problems::of(1))?)
+    }
+
+    /// All problems for which [`MeshFile::read`] refuses a file, at most so many: one at least if it
+    /// does, and none if it does not. Damage after which nothing can be understood is the last.
+    ///
+    /// # Errors
+    /// Those of a file that cannot be opened, and [`Error::OutOfMemory`].
+    pub fn problems(path: &Path, most: usize) -> Result<Vec<Problem>, Error> {
+        let (file, format, bytes) = open(path)?;
+        MeshFile::problems_by((file, format, &bytes), &next_to(path), most)
+    }
+
+    /// All problems in the bytes of a file. Otherwise as [`MeshFile::problems`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn parse_problems(
+        name: impl Into<String>,
+        format: Format,
+        bytes: &[u8],
+        most: usize,
+    ) -> Result<Vec<Problem>, Error> {
+        MeshFile::problems_by((name.into(), format, bytes), &elsewhere, most)
+    }
+
+    fn problems_by(
+        (name, format, bytes): (String, Format, &[u8]),
+        others: gltf::Others<'_>,
+        most: usize,
+    ) -> Result<Vec<Problem>, Error> {
+        let mut problems = Problems::of(most);
+        let parsed = match parsed(&name, (format, bytes), others, &mut problems)? {
+            Ok(parsed) => parsed,
+            Err(problem) => {
+                problems.found.push(problem);
+                return Ok(problems.found);
+            }
+        };
+        let mut found = problems.found;
+        let Parsed { mut positions, fans, .. } = parsed;
+        while found.len() < most {
+            let mesh = Mesh::new(name.clone(), positions.clone(), fans.faces.clone());
+            let made = mesh.and_then(|mesh| mesh.require_triangles().map(|()| mesh));
+            match made {
+                Ok(_) if !found.is_empty() => break,
+                Ok(_) => match MeshFile::parse_by((name, format, bytes), others) {
+                    Err(Error::Input { problem, .. }) => return Ok(vec![problem]),
+                    done => return done.map(|_| found),
+                },
+                Err(Error::Input { problem, .. }) => {
+                    let vertex = match problem {
+                        Problem::NonFinite { vertex, .. } | Problem::TooLarge { vertex, .. } => Some(vertex),
+                        _ => None,
+                    };
+                    // After problems of faces, faces are not whole.
+                    if found.is_empty() || vertex.is_some() {
+                        found.push(problem);
+                    }
+                    let Some(vertex) = vertex else { break };
+                    match &mut positions {
+                        Positions::F32(all) => all[vertex] = [0.0; 3],
+                        Positions::F64(all) => all[vertex] = [0.0; 3],
+                    }
+                }
+                Err(other) => return Err(other),
+            }
+        }
+        Ok(found)
     }
 
     /// Reads another frame of this mesh: a file with the same faces. They are cut as here, even if
@@ -87,7 +131,7 @@ impl MeshFile {
     /// [`MeshFile::cut_as`].
     pub fn read_frame(&self, path: &Path) -> Result<MeshFile, Error> {
         let (file, format, bytes) = open(path)?;
-        self.parse_frame(file, format, &bytes)
+        fans((file, format, &bytes), &next_to(path), &mut Problems::of(1))?.cut_as(self)
     }
 
     /// Reads a mesh from the bytes of a file; messages contain `name`. Otherwise as
@@ -96,7 +140,15 @@ impl MeshFile {
     /// # Errors
     /// As [`MeshFile::read`], except for the file itself.
     pub fn parse(name: impl Into<String>, format: Format, bytes: &[u8]) -> Result<MeshFile, Error> {
-        let file = fans(name.into(), format, bytes)?;
+        MeshFile::parse_by((name.into(), format, bytes), &elsewhere)
+    }
+
+    fn parse_by(file: (String, Format, &[u8]), others: gltf::Others<'_>) -> Result<MeshFile, Error> {
+        MeshFile::cut(fans(file, others, &mut Problems::of(1))?)
+    }
+
+    /// Cuts the polygons of a file.
+    fn cut(file: MeshFile) -> Result<MeshFile, Error> {
         if file.polygons.is_empty() {
             return Ok(file);
         }
@@ -120,7 +172,7 @@ impl MeshFile {
         format: Format,
         bytes: &[u8],
     ) -> Result<MeshFile, Error> {
-        fans(name.into(), format, bytes)?.cut_as(self)
+        fans((name.into(), format, bytes), &elsewhere, &mut Problems::of(1))?.cut_as(self)
     }
 
     /// This mesh with the triangles of another file of the same faces, so that both are frames of
@@ -180,14 +232,15 @@ impl MeshFile {
         &self.notes
     }
 
-    /// Refuses a mesh whose reader left [notes](MeshFile::notes); returns any other as it is.
+    /// Refuses a mesh whose reader left [notes](MeshFile::notes); returns any other as it is. Corners
+    /// that were welded are no reason: see [`Treated::Welded`].
     ///
     /// # Errors
     /// [`Error::Input`] with the first part of the first note. It is [`Problem::FaceCrosses`],
     /// [`Problem::FaceFolds`], a face of fewer than three corners, or a line or an element that no
     /// reader supports.
     pub fn strict(self) -> Result<MeshFile, Error> {
-        match self.notes.first() {
+        match self.notes.iter().find(|note| !matches!(note.treated, Treated::Welded { .. })) {
             Some(Note { file, first, .. }) => {
                 Err(Error::Input { file: file.clone(), problem: first.clone() })
             }
@@ -203,13 +256,34 @@ pub(crate) struct Parsed {
     pub notes: Notes,
 }
 
+/// The contents of a file; the inner error is its last problem.
+fn parsed(
+    name: &str,
+    (format, bytes): (Format, &[u8]),
+    others: gltf::Others<'_>,
+    problems: &mut Problems,
+) -> Result<Result<Parsed, Problem>, Error> {
+    if format == Format::Gltf {
+        gltf::require(name, bytes)?;
+    }
+    let text = || encoding::utf8(bytes);
+    Ok(match format {
+        Format::Ply => text().and_then(|bytes| ply::read::read(bytes, problems)),
+        Format::Obj => text().and_then(|bytes| obj::read(bytes, problems)),
+        Format::Off => text().and_then(|bytes| off::read(bytes, problems)),
+        // They have encodings of their own.
+        Format::Stl => stl::read(bytes),
+        Format::Gltf => gltf::read(bytes, others),
+    })
+}
+
 /// The mesh of a file, every polygon still a fan.
-fn fans(name: String, format: Format, bytes: &[u8]) -> Result<MeshFile, Error> {
-    let parsed = encoding::utf8(bytes).and_then(|bytes| match format {
-        Format::Ply => ply::read::read(bytes),
-        Format::Obj => obj::read(bytes),
-    });
-    let Parsed { positions, fans, notes } = match parsed {
+fn fans(
+    (name, format, bytes): (String, Format, &[u8]),
+    others: gltf::Others<'_>,
+    problems: &mut Problems,
+) -> Result<MeshFile, Error> {
+    let Parsed { positions, fans, notes } = match parsed(&name, (format, bytes), others, problems)? {
         Ok(parsed) => parsed,
         Err(problem) => return Err(Error::Input { file: name, problem }),
     };
@@ -217,6 +291,24 @@ fn fans(name: String, format: Format, bytes: &[u8]) -> Result<MeshFile, Error> {
     mesh.require_triangles()?;
     let notes = notes.of(mesh.name());
     Ok(MeshFile { mesh, polygons: fans.polygons, notes })
+}
+
+/// Files that a file names, from its folder.
+fn next_to(path: &Path) -> impl Fn(&str) -> Result<Vec<u8>, Problem> {
+    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    move |name| {
+        file::read(&folder.join(name), MULTIPLE_WELDED).map_err(|e| {
+            let text = e.to_string();
+            let (what, advice) = text.split_once("; ").unwrap_or((&text, "put it next to the file"));
+            wrong(what, advice)
+        })
+    }
+}
+
+/// Bytes have no folder in which other files are.
+fn elsewhere(name: &str) -> Result<Vec<u8>, Problem> {
+    let what = format!("names the file {:?}, and bytes have no folder", shown(name.as_bytes()));
+    Err(wrong(what, "read it by its path, or export a .glb"))
 }
 
 /// The first difference that keeps two files from being frames of one mesh. Polygons are the same
@@ -247,9 +339,14 @@ fn difference(t0: &MeshFile, t1: &MeshFile) -> Option<Problem> {
 fn open(path: &Path) -> Result<(String, Format, Vec<u8>), Error> {
     let file = path.display().to_string();
     let format = Format::of(path).map_err(|problem| Error::Input { file: file.clone(), problem })?;
-    Ok((file, format, file::read(path, MULTIPLE)?))
+    let multiple = match format {
+        Format::Stl | Format::Gltf => MULTIPLE_WELDED,
+        Format::Ply | Format::Obj | Format::Off => MULTIPLE,
+    };
+    Ok((file, format, file::read(path, multiple)?))
 }
 
 /// Maximum memory for each byte of a file, the file itself included, in bytes. Texts of short
-/// numbers need most.
+/// numbers need most. Corners that are welded need a table too.
 const MULTIPLE: u64 = 8;
+const MULTIPLE_WELDED: u64 = 24;

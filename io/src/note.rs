@@ -33,6 +33,12 @@ pub enum Treated {
     /// Geometry that is no polygon was not read: points, lines, curves and surfaces of OBJ,
     /// elements of PLY.
     NotRead,
+    /// Corners with equal coordinates became one vertex: the format has no shared vertices. It is how
+    /// such a file is read, and [`MeshFile::strict`](crate::MeshFile::strict) allows it.
+    Welded {
+        /// Number of vertices.
+        vertices: u64,
+    },
     /// A line whose first word is not a keyword of the format was skipped.
     Unknown,
 }
@@ -50,9 +56,15 @@ impl fmt::Display for Note {
         let (one, many) = match (treated, first) {
             (Treated::Fan | Treated::LeftOut, _) => ("face", "faces"),
             (_, Problem::Ply(_)) => ("entry", "entries"),
+            (Treated::NotRead, Problem::Scene { .. }) => ("part", "parts"),
             _ => ("line", "lines"),
         };
+        let corners = counted(*count, "corner was", "corners were");
         let done = match treated {
+            Treated::Welded { vertices } => {
+                let vertices = counted(*vertices, "vertex", "vertices");
+                return write!(f, "{file}: {corners} welded to {vertices} by equal coordinates: {first}");
+            }
             Treated::Fan => "cut as a fan around the first corner",
             Treated::LeftOut => "left out",
             Treated::NotRead => "not read",

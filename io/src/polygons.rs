@@ -79,11 +79,6 @@ pub(crate) struct Fans {
 }
 
 impl Fans {
-    /// Makes a gatherer with capacity for `count` triangles.
-    pub fn of(count: usize) -> Fans {
-        Fans { faces: Vec::with_capacity(count), ..Fans::default() }
-    }
-
     /// Adds the next vertex, which is corner `corner` (from 0) of its face. A face of fewer than
     /// three corners is left out afterwards.
     pub fn corner(&mut self, corner: u64, vertex: u32) {
@@ -104,6 +99,19 @@ impl Fans {
             _ => self.faces.push([self.first, self.last, vertex]),
         }
         self.last = vertex;
+    }
+
+    /// Adds a face of one triangle, a segment `[a, b, b]` or a point `[p, p, p]`.
+    pub fn single(&mut self, face: [u32; 3]) {
+        face.into_iter().enumerate().for_each(|(corner, vertex)| self.corner(corner as u64, vertex));
+    }
+
+    /// Adds a triangle of a strip; every second one turns the other way. One with equal corners joins
+    /// two strips, and is no face.
+    pub fn of_strip(&mut self, [a, b, c]: [u32; 3], turned: bool) {
+        if a != b && b != c && a != c {
+            self.single(if turned { [b, a, c] } else { [a, b, c] });
+        }
     }
 
     /// Leaves out the last face, which has this number of corners, two at most. It keeps its

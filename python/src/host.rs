@@ -12,7 +12,7 @@ use numpy::{
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
-/// Read a PLY or OBJ file, also with .gz appended.
+/// Read a PLY, OBJ, STL, OFF or glTF file, also with .gz appended.
 ///
 /// - `path`: the file.
 /// - `strict`: raise InputError for each part of the file that would be skipped or cut otherwise.

@@ -163,7 +163,7 @@ def test_a_mesh_that_lacks_a_part_of_its_file_warns(tmp_path):
     for lines, count, text in [
         ("f 1 2 3 4\n", 2, "1 face was cut as a fan around the first corner; the first: face 0, with 4 corners, crosses itself"),
         ("f 1 2 3\nf 1 2\nf 1\n", 1, "2 faces were left out; the first: line 6"),
-        ("f 1 2 3\nl 1 2\n", 1, "1 line was not read; the first: line 6"),
+        ("f 1 2 3\ncurv 0 1 1 2\n", 1, "1 line was not read; the first: line 6"),
         ("f 1 2 3\nfoo\n", 1, "1 line was skipped; the first: line 6"),
     ]:
         path.write_text(corners + lines)

@@ -185,7 +185,7 @@ fn bad_files() -> Vec<Row> {
         ("inf.obj", obj("v 0 0 1e999\nf 1 1 1\n"), &["vertex 0 has z = inf", "must be finite"]),
         ("large.obj", obj("v 0 0 1e145\nf 1 1 1\n"), &["vertex 0 has z = 1e145", "2^480"]),
         // Names.
-        ("mesh.stl", obj("solid\n"), &["extension \"stl\"", ".ply", ".obj"]),
+        ("mesh.3mf", obj("solid\n"), &["extension \"3mf\"", ".ply", ".obj"]),
         ("mesh", obj("ply\n"), &["extension \"\"", ".ply"]),
     ]
 }

@@ -4,7 +4,9 @@
 //! counts.
 
 mod bad_input;
+mod formats;
 mod fuzz_readers;
 mod mesh;
 mod notes;
 mod polygons;
+mod problems;

@@ -70,7 +70,7 @@ fn keywords_of_the_format_are_known() {
             assert!(is_plain(&mesh, Format::Obj) && mesh.notes().is_empty(), "{word}{rest}");
         }
     }
-    for word in words("p l curv surf bsp bzp cdc cdp call csh") {
+    for word in words("curv surf bsp bzp cdc cdp call csh") {
         let mesh = obj(format!("{word} 1 2\n{OBJ}{word} 3\n")).unwrap();
         let [note] = mesh.notes() else { panic!("{word}: {:?}", mesh.notes()) };
         assert_eq!((note.treated, note.count), (Treated::NotRead, 2));
@@ -229,7 +229,7 @@ fn elements_of_ply_are_known_or_counted() {
     for name in ["edge", "material", "camera", "user", "range_grid"] {
         assert!(is_plain(&with(name), Format::Ply) && with(name).notes().is_empty(), "{name}");
     }
-    for name in ["tristrips", "Face", "faces"] {
+    for name in ["tristrip", "Face", "faces"] {
         let mesh = with(name);
         assert!(is_plain(&mesh, Format::Ply));
         let [note] = mesh.notes() else { panic!("{:?}", mesh.notes()) };

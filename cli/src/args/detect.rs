@@ -10,8 +10,9 @@ use std::path::PathBuf;
 
 #[derive(Args)]
 pub struct DetectArgs {
-    /// Read a mesh (.ply, .obj), its frames in order, or a scene (.toml)
+    /// Read a mesh (such as .ply), its frames in order, or a scene (.toml)
     ///
+    /// Formats are .ply, .obj, .stl, .off, .gltf and .glb. The file `-` is standard input.
     /// Two files are the two ends of a step. Three or more are frames of one mesh, tested one after
     /// the other. A scene names its own meshes. A file may be compressed (.gz).
     #[arg(required_unless_present = "scene", num_args = 1.., value_name = "MESH")]

@@ -2,11 +2,13 @@
 
 use super::research::TraversalArg;
 use super::{Command, DetectArgs, ExplainArgs, Lab, MachineArgs, SceneArgs, Table, TablesArgs, TradeArgs};
+use crate::output::is_stdout;
 use clap::ArgMatches;
 use clap::parser::ValueSource;
 use nearmiss::device::Backend;
 use nearmiss::error::Error;
 use nearmiss_lab::scene::{ANIMATIONS, SEEDED};
+use std::path::PathBuf;
 
 /// Checks the options of a command.
 ///
@@ -15,7 +17,12 @@ use nearmiss_lab::scene::{ANIMATIONS, SEEDED};
 pub fn check(command: &Command, own: &ArgMatches) -> Result<(), Error> {
     let given = CommandLine(own);
     match command {
-        Command::Detect(args) => detect(args, given),
+        Command::Detect(args) => {
+            if args.out.out_mesh.is_none() {
+                given.none_of(&["heat"], "no mesh is coloured", "remove it, or add --out-mesh FILE")?;
+            }
+            detect(args, given)
+        }
         Command::Picture(args) => picture(&args.detect, given),
         Command::Explain(args) => explain(args, given),
         Command::Lab(lab) => match &lab.command {
@@ -26,6 +33,13 @@ pub fn check(command: &Command, own: &ArgMatches) -> Result<(), Error> {
             Lab::Bench(args) => machine(&args.machine, given),
             Lab::Turns(_) => Ok(()),
         },
+        Command::Check(args) => {
+            if args.meshes.len() == 1 {
+                given.none_of(&["each"], "there is one mesh", "remove it")?;
+            }
+            one_output(args.json, [&args.out_mesh, &args.picture])?;
+            machine(&args.machine, given)
+        }
         Command::Selftest(_) | Command::Completions(_) | Command::Man(_) => Ok(()),
     }
 }
@@ -58,11 +72,23 @@ fn machine(args: &MachineArgs, given: CommandLine) -> Result<(), Error> {
     Ok(())
 }
 
+/// Refuses to print JSON where a file is written.
+fn one_output(json: bool, files: [&Option<PathBuf>; 2]) -> Result<(), Error> {
+    match json && files.into_iter().flatten().any(|file| is_stdout(file)) {
+        true => Err(Error::InvalidArgument {
+            what: "--json cannot be used with a file on standard output (-)".into(),
+            advice: "name a file".into(),
+        }),
+        false => Ok(()),
+    }
+}
+
 /// Options of continuous queries alone.
 const OF_STEPS: [&str; 3] = ["tolerance", "max_iterations", "min_separation"];
 
 fn detect(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
     machine(&args.machine, given)?;
+    one_output(args.out.json, [&args.out.out, &args.out.out_mesh])?;
     let (query, research) = (&args.query, &args.research);
     if research.traversal != Some(TraversalArg::PerLeafSpill) {
         let why = "only the walk per-leaf-spill spills";
@@ -124,13 +150,25 @@ fn of_generated(scene: &str, given: CommandLine) -> Result<(), Error> {
 }
 
 fn plan(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
-    let idle = ["repeat", "only", "out", "verbose", "geometry", "out_mesh", "rebuild", "rebuild_every"];
+    let idle = [
+        "repeat",
+        "only",
+        "out",
+        "verbose",
+        "geometry",
+        "out_mesh",
+        "rebuild",
+        "rebuild_every",
+        "heat",
+        "fail_on",
+        "keep_going",
+    ];
     given.none_of(&idle, "a plan shows the costs of one frame", "remove it, or use detect")?;
     detect(args, given)
 }
 
 fn picture(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
-    let why = "a picture shows one frame";
+    let why = "a picture shows a frame";
     given.none_of(&super::picture::IDLE, why, "remove it, or use detect")?;
     detect(args, given)
 }

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod bench;
+mod check;
 mod detect;
 mod explain;
 mod files;
@@ -25,11 +26,13 @@ mod trade;
 mod turns;
 
 pub use bench::{BenchArgs, Question};
+pub use check::CheckArgs;
 pub use detect::DetectArgs;
 pub use explain::{Between, ExplainArgs};
 pub use help::command;
 pub use lab::{Lab, LabArgs};
 pub use machine::MachineArgs;
+pub use out::MEETS;
 pub use picture::PictureArgs;
 pub use plan::PlanArgs;
 pub use report::ReportArgs;
@@ -71,6 +74,8 @@ pub struct Cli {
 pub enum Command {
     /// Find contacts in a mesh, between meshes, or in a scene.
     Detect(Box<DetectArgs>),
+    /// Check that meshes are free: no crossings, overlaps or bad faces.
+    Check(CheckArgs),
     /// Show what each solver returns for one pair, and the exact answer.
     Explain(Box<ExplainArgs>),
     /// Draw a frame as PNG; triangles in contact are red.

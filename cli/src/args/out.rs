@@ -1,7 +1,18 @@
 //! Options that choose what is written and printed.
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Answers that are failures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FailOn {
+    /// Something meets.
+    Contacts,
+}
+
+/// Exit status if something meets that must not.
+pub const MEETS: u8 = 1;
 
 #[derive(Args)]
 pub struct OutArgs {
@@ -28,13 +39,33 @@ pub struct OutArgs {
     ///
     /// Triangles are red if they, one of their vertices or one of their edges are in contact. They
     /// are orange if all their contacts are undecided, and grey otherwise. The file may be
-    /// compressed (.ply.gz).
+    /// compressed (.ply.gz). A sequence has a file for each frame: `#` in the name is its number, as in
+    /// `marked.####.ply`.
     #[arg(long, value_name = "FILE", conflicts_with = "earliest")]
     pub out_mesh: Option<PathBuf>,
+    /// Colour triangles by their number of contacts
+    ///
+    /// Yellow is 1 contact, orange 2 or 3, red 4 to 7, dark red 8 to 15, and violet 16 or more. A
+    /// triangle has the contacts of its vertices and edges too.
+    #[arg(long, hide_short_help = true)]
+    pub heat: bool,
+    /// Exit with status 1 if something meets: contacts
+    ///
+    /// Something meets if the answer has rows, or if triangles share a point when a step starts. The
+    /// distance of the nearest bodies has a row always: bodies meet if it is 0.
+    #[arg(long, value_name = "WHAT", value_enum, hide_possible_values = true, hide_short_help = true)]
+    pub fail_on: Option<FailOn>,
     /// Print the summary as one JSON object
     #[arg(long)]
     pub json: bool,
     /// Print candidates, stages, memory and the hash too
     #[arg(long, short, conflicts_with = "json")]
     pub verbose: bool,
+}
+
+impl OutArgs {
+    /// The exit status of an answer.
+    pub fn fails(&self, meets: bool) -> ExitCode {
+        ExitCode::from(if meets && self.fail_on == Some(FailOn::Contacts) { MEETS } else { 0 })
+    }
 }

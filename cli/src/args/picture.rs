@@ -2,7 +2,7 @@
 
 use super::{DetectArgs, OUTPUT};
 use clap::builder::{StringValueParser, TypedValueParser};
-use clap::{Arg, Args, ValueEnum};
+use clap::{Arg, Args, Command, FromArgMatches, ValueEnum};
 use nearmiss::error::Error;
 use std::path::Path;
 
@@ -13,6 +13,15 @@ pub enum Around {
     All,
     /// Triangles in contact, or all bodies if there are none.
     Contacts,
+}
+
+/// The frames that are seen whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Fit {
+    /// All frames: the camera stays.
+    All,
+    /// Each frame by itself.
+    Frame,
 }
 
 /// Fewest and most pixels of either side of a picture.
@@ -47,13 +56,27 @@ pub struct LookArgs {
     #[arg(long, value_name = "WHAT", value_enum, default_value_t = Around::All, hide_possible_values = true,
         long_help = super::help::listed("Fill the picture with all bodies, or with the contacts", &["all", "contacts"]))]
     pub around: Around,
+    /// Fit the camera to all frames of a sequence, or to each frame
+    ///
+    /// One camera for all frames is the default, except with `--around contacts`.
+    #[arg(long, value_name = "WHAT", value_enum, hide_possible_values = true, hide_short_help = true,
+        long_help = super::help::listed("Fit the camera to all frames of a sequence, or to each frame. One camera for all frames is the default, except with --around contacts", &["all", "frame"]))]
+    pub fit: Option<Fit>,
     /// Draw the bodies at this time of the step, from 0 to 1
     #[arg(long, value_name = "T", default_value_t = 0.0, allow_negative_numbers = true, value_parser = part())]
     pub time: f64,
 }
 
+impl LookArgs {
+    /// How bodies are seen without options.
+    pub fn usual() -> LookArgs {
+        let none = LookArgs::augment_args(Command::new("picture")).get_matches_from(["picture"]);
+        LookArgs::from_arg_matches(&none).expect("every option has a default")
+    }
+}
+
 /// Options of `detect` that a picture refuses.
-pub const IDLE: [&str; 10] = [
+pub const IDLE: [&str; 11] = [
     "repeat",
     "only",
     "earliest",
@@ -64,6 +87,7 @@ pub const IDLE: [&str; 10] = [
     "file_faces",
     "rebuild",
     "rebuild_every",
+    "fail_on",
 ];
 
 /// An option of `detect`, as a picture has it.
@@ -75,7 +99,8 @@ fn of_picture(option: Arg) -> Arg {
             .long_help(
                 "Write the picture (.png): all bodies at --time, contacts in red\n\nTriangles are red if they, one of \
                  their vertices or one of their edges are in contact. They are orange if all their contacts are \
-                 undecided. Each body has a colour of its own, and so has each connected part of a body alone.",
+                 undecided. Each body has a colour of its own, and so has each connected part of a body alone. A \
+                 sequence has a file for each frame: `#` in the name is its number, as in `frame.####.png`.",
             ),
         idle if IDLE.contains(&idle) => option.hide(true),
         _ => option,
@@ -86,11 +111,12 @@ fn of_picture(option: Arg) -> Arg {
 ///
 /// # Errors
 /// [`Error::InvalidArgument`].
-pub fn check(path: &Path) -> Result<(), Error> {
+pub fn check(option: &str, path: &Path) -> Result<(), Error> {
     match path.extension() {
+        _ if crate::output::is_stdout(path) => Ok(()),
         Some(extension) if extension.eq_ignore_ascii_case("png") => Ok(()),
         _ => Err(Error::InvalidArgument {
-            what: format!("--out must end in .png, got {}", path.display()),
+            what: format!("{option} must end in .png, got {}", path.display()),
             advice: "rename the picture".into(),
         }),
     }

@@ -1,6 +1,6 @@
 //! Options that choose the query and its meshes.
 
-use super::number::whole;
+use super::number::{some, whole};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use nearmiss_lab::scene::NAMES;
@@ -75,6 +75,16 @@ pub struct QueryArgs {
     /// Refuse a file with parts that would be skipped or repaired
     #[arg(long, conflicts_with = "scene")]
     pub strict: bool,
+    /// List the first N problems of a file that cannot be read
+    #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true, conflicts_with = "scene",
+        hide_short_help = true, value_parser = some::<usize>())]
+    pub problems: usize,
+    /// Pass over frames that cannot be read; exit with status 3 then
+    ///
+    /// A frame is passed over if its file cannot be read, or if its faces are not those of the first.
+    /// So are steps from it and to it. The reason is printed, and is a column of --out.
+    #[arg(long, conflicts_with = "scene", hide_short_help = true)]
+    pub keep_going: bool,
     /// Test a generated scene instead of files, such as draped
     #[arg(long, conflicts_with_all = ["meshes", "with"], value_name = "NAME", hide_possible_values = true,
         long_help = super::help::listed("Test a generated scene instead of files", &NAMES),

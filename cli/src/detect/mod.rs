@@ -5,7 +5,7 @@ pub mod text;
 use crate::args::DetectArgs;
 use crate::meshes::Reader;
 use crate::output::{self, Target, print, say};
-use crate::paint;
+use crate::paint::{self, Paint};
 use crate::progress::during;
 use crate::report::{self, FileFaces, Format, Report};
 use crate::rows::numbered;
@@ -18,21 +18,21 @@ use nearmiss::query::Query;
 use nearmiss::research::{DetectorExt, QueryExt, Traversal};
 use nearmiss::scene::Scene;
 use nearmiss::words::counted;
-use nearmiss_io::{Polygons, encode_ply_coloured};
+use nearmiss_io::Polygons;
 use nearmiss_lab::OneQuery;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// A body from one file, or from two frames. Notes of its readers go to standard error.
 pub fn body(files: &[PathBuf]) -> Result<Body, Error> {
     let mut reader = Reader::default();
-    let (body, _) = body_by(files, &mut reader)?;
+    let (body, _) = body_of(files, &mut reader)?;
     reader.notes.iter().for_each(|note| say(note));
     Ok(body)
 }
 
 /// The same with the faces of the file; the reader keeps the notes.
-fn body_by(files: &[PathBuf], reader: &mut Reader) -> Result<(Body, Polygons), Error> {
+pub fn body_of(files: &[PathBuf], reader: &mut Reader) -> Result<(Body, Polygons), Error> {
     match files {
         [t0, t1] => {
             let t0 = reader.mesh(t0)?;
@@ -75,7 +75,12 @@ pub fn question(args: &DetectArgs) -> Result<Question, Error> {
         let steps = if frames < 3 { 1 } else { Sequence::steps_of(frames, query.kind().is_at_rest()) };
         steps::check(args, steps)?;
     }
-    let mut reader = Reader::new(args.query.strict);
+    let mut reader = Reader {
+        strict: args.query.strict,
+        keep_going: args.query.keep_going,
+        problems: args.query.problems,
+        ..Reader::default()
+    };
     if is_read && let Some(all) = during("reading", || Sequence::of(args, &mut reader))? {
         let query = args.to_query(all.frames > 1)?;
         steps::check(args, all.steps(query.kind().is_at_rest()))?;
@@ -106,10 +111,10 @@ fn bodies(args: &DetectArgs, reader: &mut Reader) -> Result<(Vec<Body>, Vec<Poly
             })?;
             told.push((body, Polygons::default()));
         }
-        None => told.push(during("reading", || body_by(&args.meshes, reader))?),
+        None => told.push(during("reading", || body_of(&args.meshes, reader))?),
     }
     if !args.query.with.is_empty() {
-        told.push(during("reading", || body_by(&args.query.with, reader))?);
+        told.push(during("reading", || body_of(&args.query.with, reader))?);
     }
     let (bodies, polygons): (Vec<Body>, Vec<Polygons>) = told.into_iter().unzip();
     let mut bodies: Vec<Body> = bodies.into_iter().map(|body| args.body(body)).collect();
@@ -157,18 +162,25 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
         Some(out) => Some((Format::of(out)?, Target::open(out)?)),
         None => None,
     };
+    // The files of a sequence are known when its frames are.
     let painted = match &args.out.out_mesh {
-        Some(out) => {
-            paint::check(out)?;
-            Some(Target::open(out)?)
-        }
+        Some(out) if sequence::named(out, 0).is_some() => paint::check(out).map(|()| None)?,
+        Some(out) => paint::check(out).and_then(|()| Target::open(out).map(Some))?,
         None => None,
     };
     let Question { scene, query, sequence, polygons, notes: of_files } = question(args)?;
     if let Some(all) = sequence.as_ref().filter(|all| all.steps(query.kind().is_at_rest()) > 1) {
         of_files.iter().for_each(|note| say(note));
-        return steps::detect(args, all, (scene, query), target);
+        let painted = match &args.out.out_mesh {
+            Some(out) => series(args, all, ("--out-mesh", out), query.kind().is_at_rest())?,
+            None => Vec::new(),
+        };
+        return steps::detect(args, all, (scene, query), target, painted);
     }
+    let painted = match (painted, &args.out.out_mesh) {
+        (None, Some(out)) => Some(Target::open(out)?),
+        (painted, _) => painted,
+    };
     let device = args.machine.open()?;
     promise(&query);
     let mut detector = during("building", || OneQuery::new(device.clone(), scene, query))?;
@@ -188,12 +200,12 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
     }
     let places = places(args, &mut detector, &contacts)?;
     if let Some(target) = painted {
-        let (mesh, colours) =
-            paint::paint(detector.scene().bodies(), 0.0, &contacts, places.geometry.contacts())?;
-        target.write(|mut out| encode_ply_coloured(&mesh, &mut out, &colours).map_err(|e| e.to_string()))?;
+        let (geometry, of) = (places.geometry.contacts(), Paint::of(args.out.heat));
+        let bodies = detector.scene().bodies();
+        paint::write(target, &paint::paint(bodies, 0.0, (&contacts, geometry), of)?)?;
     }
     summary.notes.splice(..0, of_files.into_iter().map(|text| Note::File { text }));
-    let told = Report { step: None, summary };
+    let told = Report { moment: None, crossing: None, summary };
     if let Some((format, target)) = target {
         let names = match &sequence {
             Some(all) => all.names.clone(),
@@ -210,7 +222,27 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
         let verbose = args.out.verbose || research.repeat > 1;
         print(&text::human(&told, &contacts, verbose))?;
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(args.out.fails(text::meets(&contacts)))
+}
+
+/// The files of a sequence, one a step: `#` in the name is the number of the frame.
+///
+/// # Errors
+/// [`Error::InvalidArgument`] for a file that is read; [`Error::Output`].
+pub fn series(
+    args: &DetectArgs,
+    all: &Sequence,
+    (option, pattern): (&str, &Path),
+    at_rest: bool,
+) -> Result<Vec<Target>, Error> {
+    let read = sequence::files(args);
+    let open = |step: usize| {
+        let file = sequence::named(pattern, all.film.moment(step).number());
+        let file = file.unwrap_or_else(|| pattern.to_owned());
+        output::keeps(option, &file, read.iter().map(PathBuf::as_path))?;
+        Target::open(&file)
+    };
+    (0..all.steps(at_rest)).map(open).collect()
 }
 
 /// The places of contacts.

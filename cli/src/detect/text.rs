@@ -2,6 +2,7 @@
 
 use crate::report::Report;
 use nearmiss::Contacts;
+use nearmiss::contacts::Rows;
 use nearmiss::query::QueryKind;
 use nearmiss::research::Summary;
 use nearmiss::research::Traversal;
@@ -53,6 +54,16 @@ pub fn found(summary: &Summary) -> String {
         let _ = write!(text, ", {} undecided", summary.undecided);
     }
     text
+}
+
+/// Whether something meets: the answer has rows, or triangles share a point when the step starts. The
+/// nearest of all bodies meet if their distance is 0.
+pub fn meets(found: &Contacts) -> bool {
+    let has_rows = match &found.rows {
+        Rows::Distance(nearest) => nearest.is_some_and(|nearest| nearest.distance == 0.0),
+        rows => !rows.is_empty(),
+    };
+    has_rows || found.starts_crossing.is_some_and(|pairs| pairs > 0)
 }
 
 /// Notes and caveats, one on a line.

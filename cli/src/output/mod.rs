@@ -9,9 +9,25 @@ use place::Way;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The file that is standard output.
+const STDOUT: &str = "-";
+
+/// Whether standard output is that of a file: then messages go to standard error.
+static IS_TAKEN: AtomicBool = AtomicBool::new(false);
+
+/// Whether a file is standard output.
+pub fn is_stdout(path: &Path) -> bool {
+    path == Path::new(STDOUT)
+}
 
 /// Prints to standard output, at once. A full disk is an error, and so is a reader that has gone.
 pub fn print(text: &str) -> Result<(), Error> {
+    if IS_TAKEN.load(Ordering::Relaxed) {
+        let _ = std::io::stderr().write_all(text.as_bytes());
+        return Ok(());
+    }
     let mut out = std::io::stdout().lock();
     out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|e| stdout_failed(&e))
 }
@@ -44,6 +60,15 @@ impl Target {
     /// # Errors
     /// [`Error::Output`].
     pub fn open(path: &Path) -> Result<Target, Error> {
+        if is_stdout(path) {
+            if IS_TAKEN.swap(true, Ordering::Relaxed) {
+                return Err(Error::InvalidArgument {
+                    what: "- is standard output, which holds one file".into(),
+                    advice: "name a file for the other".into(),
+                });
+            }
+            return Ok(Target { path: "standard output".into(), packed: false, way: Way::Stdout });
+        }
         let way = place::way(path).map_err(|e| failed(path, &e))?;
         Ok(Target { path: path.to_owned(), packed: is_packed(path), way })
     }
@@ -55,6 +80,7 @@ impl Target {
     pub fn write(self, put: impl FnOnce(&mut dyn Write) -> Result<(), String>) -> Result<(), Error> {
         let put = |out: &mut dyn Write| if self.packed { pack::pack(out, put) } else { put(out) };
         let written = match self.way {
+            Way::Stdout => place::buffered(std::io::stdout().lock(), put),
             Way::Open(file) => place::into(&file, put),
             Way::Beside(real) => place::beside(&real, put),
         };

@@ -12,6 +12,8 @@ pub enum Way {
     Beside(PathBuf),
     /// Into what is open: a device, a pipe, or a file in a folder that takes no new ones.
     Open(File),
+    /// Standard output.
+    Stdout,
 }
 
 /// How a file can be written; nothing is made.
@@ -106,12 +108,15 @@ pub fn into(file: &File, put: impl FnOnce(&mut dyn Write) -> Result<(), String>)
 ///
 /// # Errors
 /// Those of `put` and of the file.
-fn buffered(to: impl Write, put: impl FnOnce(&mut dyn Write) -> Result<(), String>) -> Result<(), String> {
+pub fn buffered(
+    to: impl Write,
+    put: impl FnOnce(&mut dyn Write) -> Result<(), String>,
+) -> Result<(), String> {
     let mut out = BufWriter::new(to);
     let written = put(&mut out);
     // A buffer that is dropped would write what it holds.
     let (mut to, held) = out.into_parts();
-    written.and_then(|()| to.write_all(&held.unwrap_or_default()).map_err(text))
+    written.and_then(|()| to.write_all(&held.unwrap_or_default()).and_then(|()| to.flush()).map_err(text))
 }
 
 fn text(error: io::Error) -> String {

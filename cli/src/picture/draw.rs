@@ -33,14 +33,18 @@ const LINE: f64 = 1.0;
 const POINT: f64 = 2.6;
 
 impl Picture<'_> {
-    /// The pixels, three bytes each, row by row from the top: looked at from the first direction with the second up, both of length 1. Around
-    /// what meets, or around everything.
-    pub fn draw(&self, directions: [[f64; 3]; 2], size: [usize; 2], around_met: bool) -> Vec<u8> {
+    /// The camera that looks from the first direction with the second up, both of length 1. Around what
+    /// meets, or around everything.
+    pub fn camera(&self, directions: [[f64; 3]; 2], size: [usize; 2], around_met: bool) -> Camera {
         // A vertex of no triangle may be anywhere.
         let corners = |face: &[u32; 3]| face.map(|vertex| self.points[vertex as usize]);
         let framed = if around_met { self.met } else { &[] };
         let framed = framed.iter().flat_map(|triangle| corners(&self.faces[*triangle as usize]));
-        let camera = Camera::new(self.faces.iter().flat_map(corners), framed, directions, size);
+        Camera::new(self.faces.iter().flat_map(corners), framed, directions, size)
+    }
+
+    /// The pixels, three bytes each, row by row from the top.
+    pub fn draw(&self, camera: &Camera, size: [usize; 2]) -> Vec<u8> {
         let places: Vec<[f64; 3]> = self.points.iter().map(|point| camera.place(*point)).collect();
         let normals = normals(self.points, self.faces);
         let sides = self.sides(&places);
@@ -52,7 +56,7 @@ impl Picture<'_> {
             for at in (0..self.faces.len()).filter(|at| is_met[*at] == now) {
                 let corner = |k: usize| Corner {
                     place: places[self.faces[at][k] as usize],
-                    colour: lit(self.colours[at], normals[at][k], &camera),
+                    colour: lit(self.colours[at], normals[at][k], camera),
                 };
                 canvas.triangle([corner(0), corner(1), corner(2)], sides);
             }

@@ -1,6 +1,7 @@
 //! Files of scenes: TOML, a table a body, pairs of bodies that are left out, and pairs of vertices.
 
 use super::exclusions::{ExcludeTable, ExcludedPairs, PairsTable, pairs};
+use super::globs;
 use super::poses::{PathName, PoseTable, Poses};
 use nearmiss::Thickness;
 use nearmiss::error::Error;
@@ -66,7 +67,7 @@ struct Whole {
 struct BodyTable {
     name: Option<String>,
     mesh: Option<PathBuf>,
-    meshes: Option<Vec<PathBuf>>,
+    meshes: Option<Names>,
     #[serde(default)]
     kind: Kind,
     poses: Option<Vec<PoseTable>>,
@@ -79,6 +80,14 @@ struct BodyTable {
     #[serde(default)]
     thickness: Radii,
     exclude: Option<ExcludeTable>,
+}
+
+/// A pattern, or files and patterns.
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "`meshes` must be a pattern such as \"cloth.*.ply\", or a list of files")]
+enum Names {
+    One(PathBuf),
+    All(Vec<PathBuf>),
 }
 
 /// A radius, or one for each vertex.
@@ -188,7 +197,8 @@ fn described(path: &Path, line: usize, table: Table) -> Result<Described, Error>
     })?;
     let meshes = match (table.mesh, table.meshes) {
         (Some(mesh), None) => vec![mesh],
-        (None, Some(meshes)) if !meshes.is_empty() => meshes,
+        (None, Some(Names::One(pattern))) => vec![pattern],
+        (None, Some(Names::All(meshes))) if !meshes.is_empty() => meshes,
         (None, Some(_)) => return Err(bad("`meshes` is empty", "name one file per frame, or use `mesh`")),
         (Some(_), Some(_)) => {
             return Err(bad("`mesh` and `meshes` exclude each other", "remove one of them"));
@@ -197,6 +207,8 @@ fn described(path: &Path, line: usize, table: Table) -> Result<Described, Error>
             return Err(bad("`mesh` is missing", "name a file with `mesh`, or one per frame with `meshes`"));
         }
     };
+    let meshes =
+        globs::expanded(super::folder_of(path), meshes).map_err(|(what, advice)| bad(&what, advice))?;
     let kind = match table.kind {
         Kind::Fixed => BodyKind::Fixed,
         Kind::Rigid => BodyKind::Rigid,

@@ -2,10 +2,19 @@
 
 mod exclusions;
 mod file;
+mod film;
+mod frames;
+mod globs;
+mod lines;
 mod poses;
 pub mod steps;
+mod walk;
 
 pub use file::text as read_text;
+pub use film::{Moment, check as check_name, named};
+pub use lines::untested;
+pub use steps::PARTIAL;
+pub use walk::Walk;
 
 use crate::args::DetectArgs;
 use crate::meshes::Reader;
@@ -13,6 +22,8 @@ use crate::output::say;
 use crate::rows::numbered;
 use exclusions::{ExcludedPairs, exclude};
 use file::{Described, SceneFile, wrong};
+use film::Film;
+use frames::Frames;
 use nearmiss::error::Error;
 use nearmiss::memory;
 use nearmiss::mesh::{Body, Positions};
@@ -39,6 +50,17 @@ impl Track {
         }
     }
 
+    /// The place of a vertex at a frame; a body at rest has one.
+    fn point(&self, body: &Body, frame: usize, vertex: u32) -> [f64; 3] {
+        match self {
+            Track::Positions(all) => all[frame].get_f64(vertex as usize).unwrap_or_default(),
+            Track::Poses(all) => {
+                let own = body.positions_t0().get_f64(vertex as usize).unwrap_or_default();
+                all.frames[frame].apply(own)
+            }
+        }
+    }
+
     /// At a frame, or in the step from it to the next; of what rests there is nothing to say.
     fn input(&self, at: usize, at_rest: bool) -> Option<Motion<'_>> {
         match self {
@@ -56,6 +78,9 @@ struct Told {
     body: Body,
     track: Track,
     polygons: Polygons,
+    /// Its files if there is one a frame, and why some cannot be used.
+    files: Vec<PathBuf>,
+    reasons: Vec<Option<String>>,
 }
 
 /// Bodies and their frames.
@@ -70,6 +95,8 @@ pub struct Sequence {
     excluded: Excluded,
     /// How many frames there are: at least one.
     pub frames: usize,
+    /// Their files.
+    pub film: Film,
     /// The names of the bodies in rows: those of a scene file, or numbers of several.
     pub names: Option<Vec<String>>,
 }
@@ -145,14 +172,18 @@ impl Sequence {
         if args.query.weld {
             all.weld();
         }
+        reader.notes.extend(all.film.notes());
         Ok(Some(all))
     }
 
     fn new(told: Vec<Told>, names: Option<Vec<String>>) -> Sequence {
         let frames = told.iter().map(|one| one.track.frames()).max().unwrap_or(1);
+        let files = told.iter().map(|one| &one.files).find(|files| !files.is_empty());
+        let film = Film::new(files.cloned().unwrap_or_default());
         let (bodies, tracks, polygons, left_out, excluded) = Default::default();
-        let all = Sequence { bodies, tracks, polygons, left_out, excluded, frames, names };
-        told.into_iter().fold(all, |mut all, Told { body, track, polygons }| {
+        let all = Sequence { bodies, tracks, polygons, left_out, excluded, frames, film, names };
+        told.into_iter().fold(all, |mut all, Told { body, track, polygons, reasons, .. }| {
+            all.film.mark(reasons);
             all.bodies.push(body);
             all.tracks.push(track);
             all.polygons.push(polygons);
@@ -231,6 +262,15 @@ impl Sequence {
         scene.ids().zip(inputs).filter_map(|(id, input)| input.map(|input| (id, input))).collect()
     }
 
+    /// The corners of all triangles in all frames.
+    pub fn corners(&self) -> impl Iterator<Item = [f64; 3]> + Clone {
+        self.bodies.iter().zip(&self.tracks).flat_map(|(body, track)| {
+            (0..track.frames()).flat_map(move |frame| {
+                body.faces().iter().flatten().map(move |&vertex| track.point(body, frame, vertex))
+            })
+        })
+    }
+
     fn weld(&mut self) {
         for (body, track) in self.bodies.iter_mut().zip(&self.tracks) {
             let frames: &[Positions] = if let Track::Positions(all) = track { all } else { &[] };
@@ -242,25 +282,12 @@ impl Sequence {
     }
 }
 
-/// A mesh and its positions frame after frame: all in double precision if any is.
+/// A deformable body and its frames.
 fn of_mesh(files: &[PathBuf], reader: &mut Reader) -> Result<Told, Error> {
-    let Some((first, others)) = files.split_first() else {
-        return Err(Error::Bug { what: "a mesh without files".into() });
-    };
-    let mesh = reader.mesh(first)?;
-    let (track, polygons) = (track(&mesh, others, reader)?, mesh.polygons().clone());
-    Ok(Told { body: Body::deformable(mesh.into_mesh()), track, polygons })
-}
-
-fn track(mesh: &MeshFile, others: &[PathBuf], reader: &mut Reader) -> Result<Track, Error> {
-    let mut frames = vec![mesh.mesh().positions().clone()];
-    for file in others {
-        frames.push(reader.frame(mesh, file)?.mesh().positions().clone());
-    }
-    if frames.iter().any(Positions::is_f64) {
-        frames = frames.iter().map(|frame| Positions::F64(frame.to_f64())).collect();
-    }
-    Ok(Track::Positions(frames))
+    let Frames { mesh, positions, reasons } = Frames::read(files, reader)?;
+    let (polygons, track) = (mesh.polygons().clone(), Track::Positions(positions));
+    let files = if files.len() > 1 { files.to_vec() } else { Vec::new() };
+    Ok(Told { body: Body::deformable(mesh.into_mesh()), track, polygons, files, reasons })
 }
 
 /// Fewest bytes that a copy of a mesh takes for each of its triangles.
@@ -274,6 +301,12 @@ fn of_table(
     reader: &mut Reader,
 ) -> Result<Told, Error> {
     let files: Vec<PathBuf> = table.meshes.iter().map(|mesh| folder.join(mesh)).collect();
+    if files.len() > 1 && table.kind != BodyKind::Rigid {
+        let told = of_mesh(&files, reader)?;
+        let mut body = told.body.with_filter(table.filter).with_thickness(table.thickness.clone());
+        validated(&mut body, path, table)?;
+        return Ok(Told { body, ..told });
+    }
     if !read.contains_key(&files[0]) {
         read.insert(files[0].clone(), reader.mesh(&files[0])?);
     }
@@ -281,7 +314,7 @@ fn of_table(
     memory::require("the scene's bodies", mesh.mesh().face_count() as u64 * OF_A_TRIANGLE)?;
     let track = match table.kind {
         BodyKind::Rigid => Track::Poses(table.poses.clone()),
-        _ => track(&mesh, &files[1..], reader)?,
+        _ => Track::Positions(vec![mesh.mesh().positions().clone()]),
     };
     let polygons = mesh.polygons().clone();
     let mesh = mesh.into_mesh();
@@ -291,10 +324,7 @@ fn of_table(
         _ => Body::deformable(mesh),
     };
     let mut body = body.with_filter(table.filter).with_thickness(table.thickness.clone());
-    body.validate().map_err(|e| {
-        let (what, advice) = parts(&e);
-        wrong(path, format!("{}: {what}", table.called), advice)
-    })?;
+    validated(&mut body, path, table)?;
     if let Track::Poses(poses) = &track {
         for at in 0..poses.frames.len() {
             body.check(&poses.up_to(at)).map_err(|e| {
@@ -304,7 +334,15 @@ fn of_table(
         }
         body = body.at(poses.frames[0])?;
     }
-    Ok(Told { body, track, polygons })
+    Ok(Told { body, track, polygons, files: Vec::new(), reasons: Vec::new() })
+}
+
+/// Checks a body of a scene; an error names its table.
+fn validated(body: &mut Body, path: &Path, table: &Described) -> Result<(), Error> {
+    body.validate().map_err(|e| {
+        let (what, advice) = parts(&e);
+        wrong(path, format!("{}: {what}", table.called), advice)
+    })
 }
 
 /// The fault of an error, and its remedy.

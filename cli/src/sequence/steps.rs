@@ -1,25 +1,27 @@
 //! `detect` of several steps or frames, one after the other, by one detector.
 
-use super::Sequence;
+use super::film::Moment;
+use super::lines::{Total, line, untested};
+use super::{Sequence, Walk, check_name};
 use crate::args::DetectArgs;
-use crate::detect::{Places, places, promise, text};
+use crate::detect::{Places, places, promise};
 use crate::output::{Target, print};
-use crate::progress::during;
+use crate::paint::{self, Paint};
 use crate::report::{FileFaces, Format, Report};
 use crate::rows::{Columns, JsonRows};
 use crate::vtp::Vtp;
-use nearmiss::contacts::{Contacts, Note};
-use nearmiss::device::Device;
+use nearmiss::contacts::{Contacts, Geometry, Note};
 use nearmiss::error::Error;
 use nearmiss::query::Query;
 use nearmiss::research::DetectorExt;
 use nearmiss::scene::Scene;
 use nearmiss::words::counted;
-use nearmiss_lab::OneQuery;
-use nearmiss_lab::tables::digits;
 use serde::Serialize;
 use std::io::Write;
 use std::process::ExitCode;
+
+/// Exit status of a sequence with steps that could not be tested: that of bad input.
+pub const PARTIAL: u8 = 3;
 
 /// Why a sequence ended before its end.
 enum Stop {
@@ -38,37 +40,35 @@ impl From<Error> for Stop {
 /// The target of rows.
 enum Out<'a> {
     Nowhere,
-    Csv(Box<csv::Writer<&'a mut dyn Write>>),
+    /// The file, and the number of its columns.
+    Csv(Box<csv::Writer<&'a mut dyn Write>>, usize),
     Json(&'a mut dyn Write),
     /// Kept until the last step: its cells stand in another order.
     Vtp(Box<Vtp>, &'a mut dyn Write),
 }
 
-/// Refuses options of one step that several do not have.
+/// Refuses options of one step that several do not have, and those of several that one does not have.
 ///
 /// # Errors
 /// [`Error::InvalidArgument`].
 pub fn check(args: &DetectArgs, steps: usize) -> Result<(), Error> {
-    let refused = |option: &str, why: &str| {
+    let refused = |option: &str, why: &str, advice: &str| {
         let what = format!("{option} has no effect: {why}");
-        Err(Error::InvalidArgument { what, advice: "remove it, or give one step or frame".into() })
+        Err(Error::InvalidArgument { what, advice: advice.into() })
     };
+    let one = "remove it, or give one step or frame";
     let research = &args.research;
     match (steps > 1, research.rebuild_every) {
-        (true, _) if research.only.is_some() => refused("--only", "each of several steps runs once"),
-        (true, _) if args.out.out_mesh.is_some() => Err(Error::InvalidArgument {
-            what: format!("--out-mesh holds one step or frame, got {steps}"),
-            advice: "give one step or frame, or write contacts with --out".into(),
-        }),
-        (true, _) if research.repeat > 1 => refused("--repeat", "each of several steps runs once"),
+        (true, _) if research.only.is_some() => refused("--only", "each of several steps runs once", one),
+        (true, _) if research.repeat > 1 => refused("--repeat", "each of several steps runs once", one),
         (false, every) if every.is_some() || research.rebuild.is_some() => {
             let option = if every.is_some() { "--rebuild-every" } else { "--rebuild" };
-            Err(Error::InvalidArgument {
-                what: format!("{option} has no effect: the tree of the first step is new"),
-                advice: "remove it, or give more frames".into(),
-            })
+            refused(option, "the tree of the first step is new", "remove it, or give more frames")
         }
-        _ => Ok(()),
+        (false, _) if args.query.keep_going => {
+            refused("--keep-going", "there is one step or frame", "remove it, or give more frames")
+        }
+        _ => args.out.out_mesh.as_ref().map_or(Ok(()), |out| check_name("--out-mesh", out, steps)),
     }
 }
 
@@ -81,155 +81,213 @@ pub fn detect(
     all: &Sequence,
     (scene, query): (Scene, Query),
     target: Option<(Format, Target)>,
+    painted: Vec<Target>,
 ) -> Result<ExitCode, Error> {
-    let device = args.machine.open()?;
     promise(&query);
-    let steps = Steps::new(args, all, device, (scene, query))?;
+    let walk = Walk::new(args, all, (scene, query))?;
+    let faces = args.out.file_faces.then(|| FileFaces::of(walk.detector.scene().bodies(), &all.polygons));
+    let steps = Steps { args, query, walk, faces, painted, total: Total::default() };
     let Some((format, target)) = target else {
         return match steps.run(Out::Nowhere) {
             Err(Stop::Other(error)) => Err(error),
             Err(Stop::File(text)) => Err(Error::Bug { what: text }),
-            Ok(()) => Ok(ExitCode::SUCCESS),
+            Ok(code) => Ok(code),
         };
     };
-    let mut failed = None;
+    let (mut failed, mut code) = (None, ExitCode::SUCCESS);
     let written = target.write(|out| {
         let out = match format {
-            Format::Csv => Out::Csv(Box::new(csv::Writer::from_writer(out as &mut dyn Write))),
+            Format::Csv => Out::Csv(Box::new(csv::Writer::from_writer(out as &mut dyn Write)), 0),
             Format::Json => Out::Json(out),
             Format::Vtp => Out::Vtp(Box::default(), out),
         };
-        steps.run(out).map_err(|stop| match stop {
+        let done = steps.run(out).map_err(|stop| match stop {
             Stop::File(text) => text,
             Stop::Other(error) => failed.insert(error).to_string(),
-        })
+        });
+        code = done?;
+        Ok(())
     });
     match failed {
         Some(error) => Err(error),
-        None => written.map(|()| ExitCode::SUCCESS),
+        None => written.map(|()| code),
     }
 }
 
 struct Steps<'a> {
     args: &'a DetectArgs,
-    all: &'a Sequence,
     query: Query,
-    detector: OneQuery,
+    walk: Walk<'a>,
     faces: Option<FileFaces>,
+    /// The coloured meshes to write, one a step.
+    painted: Vec<Target>,
+    total: Total,
+}
+
+/// A step in JSON that could not be tested.
+#[derive(Serialize)]
+struct Untested<'a> {
+    #[serde(flatten)]
+    moment: &'a Moment,
+    reason: &'a str,
+}
+
+/// A step in the printed JSON.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Printed {
+    Tested(Box<Report>),
+    Untested {
+        #[serde(flatten)]
+        moment: Moment,
+        reason: String,
+    },
 }
 
 impl Steps<'_> {
-    fn new<'a>(
-        args: &'a DetectArgs,
-        all: &'a Sequence,
-        device: Device,
-        (scene, query): (Scene, Query),
-    ) -> Result<Steps<'a>, Error> {
-        let faces = args.out.file_faces.then(|| FileFaces::of(scene.bodies(), &all.polygons));
-        let detector = during("building", || OneQuery::new(device, scene, query))?;
-        Ok(Steps { args, all, query, detector, faces })
-    }
-
-    fn run(mut self, mut out: Out) -> Result<(), Stop> {
-        let (at_rest, mut told, mut total) = (self.query.kind().is_at_rest(), Vec::new(), Total::default());
-        if let Out::Json(out) = &mut out {
-            out.write_all(b"{\"steps\":[").map_err(|e| Stop::File(e.to_string()))?;
-        }
-        for step in 0..self.all.steps(at_rest) {
-            let found = during(format!("step {step}"), || self.ask(step, at_rest))?;
-            let report = self.report(step, &found);
-            let places = places(self.args, &mut self.detector, &found)?;
-            self.put(&mut out, &found, &report, &places).map_err(Stop::File)?;
-            total.add(step, &found);
-            if self.args.out.json {
-                told.push(report);
+    fn run(mut self, mut out: Out) -> Result<ExitCode, Stop> {
+        let (at_rest, all) = (self.query.kind().is_at_rest(), self.walk.all);
+        let (json, mut told) = (self.args.out.json, Vec::new());
+        self.begin(&mut out).map_err(Stop::File)?;
+        let mut painted = std::mem::take(&mut self.painted).into_iter();
+        for step in 0..all.steps(at_rest) {
+            let (moment, mesh) = (all.film.moment(step), painted.next());
+            if let Some(reason) = all.film.reason(step, at_rest) {
+                self.pass(&mut out, &moment, reason).map_err(Stop::File)?;
+                self.total.pass();
+                match json {
+                    true => told.push(Printed::Untested { moment, reason: reason.into() }),
+                    false => print(&untested(&moment, at_rest, reason))?,
+                }
+                continue;
+            }
+            let report = self.step(&moment, &mut out, mesh)?;
+            if json {
+                told.push(Printed::Tested(Box::new(report)));
             } else {
                 let verbose = self.args.out.verbose;
-                let head = if step == 0 && verbose { self.head(&report) } else { String::new() };
-                print(&(head + &line(&report, at_rest, verbose)))?;
+                let is_first = verbose && self.total.is_first();
+                let head = if is_first { self.head(&report) } else { String::new() };
+                print(&(head + &line(&report, &moment, at_rest, verbose)))?;
             }
         }
         match &mut out {
             Out::Nowhere => Ok(()),
-            Out::Csv(csv) => csv.flush().map_err(|e| e.to_string()),
+            Out::Csv(csv, _) => csv.flush().map_err(|e| e.to_string()),
             Out::Json(out) => out.write_all(b"]}").map_err(|e| e.to_string()),
             Out::Vtp(vtp, out) => vtp.write(*out).map_err(|e| e.to_string()),
         }
         .map_err(Stop::File)?;
-        if self.args.out.json {
+        if json {
             #[derive(Serialize)]
             struct All {
-                steps: Vec<Report>,
+                steps: Vec<Printed>,
             }
             let text = serde_json::to_string(&All { steps: told });
             let text = text.map_err(|e| Error::Bug { what: e.to_string() })?;
             print(&(text + "\n"))?;
         } else {
-            print(&total.text(at_rest))?;
+            print(&self.total.text(at_rest))?;
         }
-        Ok(())
+        Ok(match (self.total.is_partial(), self.args.out.fails(self.total.meets)) {
+            (true, _) => ExitCode::from(PARTIAL),
+            (false, code) => code,
+        })
     }
 
-    /// A detector begins where the first step does.
-    fn ask(&mut self, step: usize, at_rest: bool) -> Result<Contacts, Error> {
-        let anew =
-            self.args.research.rebuild_every.is_some_and(|every| (step as u64).is_multiple_of(every.into()));
-        let inputs = self.all.inputs(self.detector.scene(), step, at_rest);
-        match step {
-            0 => self.detector.detect(),
-            _ if anew => {
-                self.detector.update(&inputs)?;
-                self.detector.rebuild()?;
-                self.detector.detect()
-            }
-            _ => self.detector.frame(&inputs),
+    /// Runs a step, and writes its rows and its mesh.
+    fn step(&mut self, moment: &Moment, out: &mut Out, mesh: Option<Target>) -> Result<Report, Stop> {
+        let found = self.walk.at(moment.step)?;
+        let mut report = self.report(moment, &found);
+        let places = places(self.args, &mut self.walk.detector, &found)?;
+        if let Some(target) = mesh {
+            let bodies = self.walk.detector.scene().bodies();
+            let (geometry, paint) = (places.geometry.contacts(), Paint::of(self.args.out.heat));
+            paint::write(target, &paint::paint(bodies, 0.0, (&found, geometry), paint)?)?;
         }
+        report.crossing = self.walk.crossing()?;
+        self.put(out, &found, &report, &places).map_err(Stop::File)?;
+        self.total.add(moment, &found, report.crossing);
+        Ok(report)
     }
 
     /// The summary. Seams of a mesh are noted once.
-    fn report(&mut self, step: usize, found: &Contacts) -> Report {
-        let mut summary = self.detector.summary(found);
+    fn report(&mut self, moment: &Moment, found: &Contacts) -> Report {
+        let mut summary = self.walk.detector.summary(found);
         summary.frames = if self.query.kind().is_at_rest() { 1 } else { 2 };
-        summary.notes.retain(|note| step == 0 || !matches!(note, Note::Coincident { .. }));
-        Report { step: Some(step), summary }
+        let is_first = self.total.is_empty();
+        summary.notes.retain(|note| is_first || !matches!(note, Note::Coincident { .. }));
+        Report { moment: Some(moment.clone()), crossing: None, summary }
     }
 
-    fn put(&self, out: &mut Out, found: &Contacts, report: &Report, places: &Places) -> Result<(), String> {
-        if matches!(out, Out::Nowhere) {
-            return Ok(());
+    /// Columns of the rows of a step.
+    fn columns<'a>(&'a self, moment: &'a Moment, geometry: Option<&'a Geometry>) -> Columns<'a> {
+        Columns {
+            moment: Some(moment),
+            has_reason: self.args.query.keep_going,
+            names: self.walk.all.names.as_deref(),
+            faces: self.faces.is_some(),
+            geometry,
         }
+    }
+
+    /// Writes the beginning of a file.
+    fn begin(&self, out: &mut Out) -> Result<(), String> {
+        match out {
+            Out::Csv(csv, count) => {
+                let (moment, none) = (self.walk.all.film.moment(0), Contacts::none(self.query));
+                let empty = Geometry::default();
+                let columns = self.columns(&moment, self.args.out.geometry.then_some(&empty));
+                *count = columns.head(csv, &none.rows)?;
+                Ok(())
+            }
+            Out::Json(out) => out.write_all(b"{\"steps\":[").map_err(|e| e.to_string()),
+            Out::Nowhere | Out::Vtp(..) => Ok(()),
+        }
+    }
+
+    /// Writes a step that is not tested.
+    fn pass(&self, out: &mut Out, moment: &Moment, reason: &str) -> Result<(), String> {
+        match out {
+            Out::Csv(csv, count) => self.columns(moment, None).untested(csv, reason, *count),
+            Out::Json(out) => self.json(*out, moment, &Untested { moment, reason }),
+            Out::Nowhere | Out::Vtp(..) => Ok(()),
+        }
+    }
+
+    /// Writes a step of JSON.
+    fn json(&self, out: &mut dyn Write, moment: &Moment, step: &impl Serialize) -> Result<(), String> {
+        if moment.step > 0 {
+            out.write_all(b",").map_err(|e| e.to_string())?;
+        }
+        serde_json::to_writer(out, step).map_err(|e| e.to_string())
+    }
+
+    /// Writes the rows of a step.
+    fn put(&self, out: &mut Out, found: &Contacts, report: &Report, places: &Places) -> Result<(), String> {
+        let Some(moment) = report.moment.as_ref().filter(|_| !matches!(out, Out::Nowhere)) else {
+            return Ok(());
+        };
         let named = self.faces.as_ref().map(|faces| faces.name(&found.rows));
         let geometry = self.args.out.geometry.then_some(&places.geometry);
-        let (answer, names) = (named.as_ref().unwrap_or(&found.rows), self.all.names.as_deref());
+        let (answer, names) = (named.as_ref().unwrap_or(&found.rows), self.walk.all.names.as_deref());
         match out {
             Out::Nowhere => Ok(()),
-            Out::Csv(csv) => {
-                let columns = Columns { step: report.step, names, faces: named.is_some(), geometry };
-                if report.step == Some(0) {
-                    columns.head(csv, answer)?;
-                }
-                columns.rows(csv, answer)
-            }
+            Out::Csv(csv, _) => self.columns(moment, geometry).rows(csv, answer),
             Out::Vtp(vtp, _) => {
-                vtp.add(report.step, answer, places);
+                vtp.add(Some(moment.step), answer, places);
                 Ok(())
             }
             Out::Json(out) => {
                 #[derive(Serialize)]
                 struct Step<'a> {
-                    step: Option<usize>,
+                    #[serde(flatten)]
+                    moment: &'a Moment,
                     summary: &'a Report,
                     contacts: JsonRows<'a>,
                 }
-                if report.step != Some(0) {
-                    out.write_all(b",").map_err(|e| e.to_string())?;
-                }
-                let step = Step {
-                    step: report.step,
-                    summary: report,
-                    contacts: JsonRows { answer, names, geometry },
-                };
-                serde_json::to_writer(out, &step).map_err(|e| e.to_string())
+                let contacts = JsonRows { answer, names, geometry };
+                self.json(*out, moment, &Step { moment, summary: report, contacts })
             }
         }
     }
@@ -239,67 +297,13 @@ impl Steps<'_> {
         let summary = &report.summary;
         format!(
             "{}, {}, {}, {}; {} query by {} on {}\n",
-            counted(self.detector.scene().ids().count() as u64, "body", "bodies"),
+            counted(self.walk.detector.scene().ids().count() as u64, "body", "bodies"),
             counted(summary.triangles as u64, "triangle", "triangles"),
             counted(summary.vertices as u64, "vertex", "vertices"),
-            counted(self.all.frames as u64, "frame", "frames"),
+            counted(self.walk.all.frames as u64, "frame", "frames"),
             summary.query,
             summary.solver,
             summary.device
         )
-    }
-}
-
-/// A step on a line, with its notes and caveats below.
-fn line(report: &Report, at_rest: bool, verbose: bool) -> String {
-    let (summary, name) = (&report.summary, if at_rest { "frame" } else { "step" });
-    let found = text::found(summary);
-    let mut text = format!("{name} {}: {found}; {} ms", report.step.unwrap_or(0), digits(summary.ms.wall));
-    if verbose {
-        text += &format!(", frame {:.3} ms, wall {:.3} ms", summary.ms.total, summary.ms.wall);
-        text += &format!("; hash {}", summary.hash);
-    }
-    text + "\n" + &text::remarks(summary)
-}
-
-/// The sum of all steps.
-#[derive(Default)]
-struct Total {
-    steps: u64,
-    contacts: u64,
-    /// Wall time, milliseconds.
-    ms: f64,
-    first: Option<(usize, f64)>,
-    /// The least distance, and its frame.
-    nearest: Option<(f64, usize)>,
-}
-
-impl Total {
-    fn add(&mut self, step: usize, found: &Contacts) {
-        self.steps += 1;
-        self.contacts += found.len() as u64;
-        self.ms += found.stats.stages.wall;
-        self.first = self.first.or(found.earliest_toi().map(|toi| (step, toi)));
-        let nearer = |least: f64| self.nearest.is_none_or(|(other, _)| least < other);
-        if let Some(least) = found.distance().filter(|&least| nearer(least)) {
-            self.nearest = Some((least, step));
-        }
-    }
-
-    fn text(&self, at_rest: bool) -> String {
-        let [name, names] = if at_rest { ["frame", "frames"] } else { ["step", "steps"] };
-        let first = |(step, toi)| format!(", first in step {step} at t = {}", text::below(toi));
-        let found = match self.nearest {
-            Some((least, step)) => {
-                format!("least distance {least}, in {name} {step} of {}", self.steps)
-            }
-            None => format!(
-                "{} in {}{}",
-                counted(self.contacts, "contact", "contacts"),
-                counted(self.steps, name, names),
-                self.first.map_or(String::new(), first)
-            ),
-        };
-        format!("{found}; {} ms\n", digits(self.ms))
     }
 }

@@ -6,8 +6,8 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 
 /// Commands that are tried here.
-const COMMANDS: [&str; 9] =
-    ["detect", "plan", "picture", "explain", "scene", "bench", "tables", "trade", "turns"];
+const COMMANDS: [&str; 10] =
+    ["detect", "check", "plan", "picture", "explain", "scene", "bench", "tables", "trade", "turns"];
 
 /// Options of commands that take long: the test that sees what each changes.
 const ELSEWHERE: [(&str, &[&str], &str); 5] = [
@@ -94,12 +94,13 @@ fn every_option_changes_something_or_is_refused() {
     let other = folder.path("soup_t0.ply");
     let quads = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .2 .2 -1\nv .3 .2 1\nv .2 .3 1\nf 1 2 3 4\nf 5 6 7\n";
     let quads = folder.write("quads.obj", quads);
+    let torn = folder.write("torn.obj", "v 0 x 0\nv 1 y 0\nv 0 1 0\nf 1 2 3\n");
     let note = folder.write("note.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2\n");
     let seam =
         folder.write("seam.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 4 5 6\n");
     let fan = folder.write("fan.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nv .5 .5 1\nv .5 .5 -1\nf 1 2 3\nf 1 4 5\n");
     let made = |name: &str| folder.path(&format!("made/{name}"));
-    let [csv, json, ply, png, dir] = ["a.csv", "a.json", "a.ply", "a.png", ""].map(made);
+    let [csv, json, ply, png, frames, dir] = ["a.csv", "a.json", "a.ply", "a.png", "#.png", ""].map(made);
     let scene: Vec<&str> = vec!["--scene", "soup-moving", "--triangles", "300", "--backend", "cpu", "--json"];
     let still: Vec<&str> = vec!["--scene", "soup", "--triangles", "300", "--backend", "cpu", "--json"];
     let files: Vec<&str> = vec![&t0, &t1, "--backend", "cpu", "--json"];
@@ -167,12 +168,27 @@ fn every_option_changes_something_or_is_refused() {
         ("detect", vec![&seam, "--json"], no.clone(), vec!["--only-crossing"]),
         ("detect", vec![&seam, "--json"], no.clone(), vec!["--weld"]),
         ("detect", vec![&note, "--json"], no.clone(), vec!["--strict"]),
+        ("detect", vec![&torn], no.clone(), vec!["--problems", "5"]),
+        ("check", vec![&torn], no.clone(), vec!["--problems", "1"]),
         ("detect", vec![&quads, "--out", &csv], no.clone(), vec!["--file-faces"]),
         ("detect", files.clone(), no.clone(), vec!["--out", &csv]),
         ("detect", files.clone(), vec!["--out", &csv], vec!["--out", &json]),
         ("detect", vec![&t0, &t1, "--out", &csv], no.clone(), vec!["--geometry"]),
         ("detect", vec![&t0, "--out", &csv], no.clone(), vec!["--geometry"]),
         ("detect", vec![&t0, "--json"], no.clone(), vec!["--out-mesh", &ply]),
+        ("detect", vec![&t0, "--json", "--out-mesh", &ply], no.clone(), vec!["--heat"]),
+        ("detect", vec![&t0, "--json"], no.clone(), vec!["--heat"]),
+        ("detect", vec![&t0, "--json"], no.clone(), vec!["--fail-on", "contacts"]),
+        ("detect", vec![&t0, &t1, &quads, "--json"], no.clone(), vec!["--keep-going"]),
+        ("detect", vec![&t0, "--json"], no.clone(), vec!["--keep-going"]),
+        ("picture", vec![&t0, "--size", "64x64", "--out", &png], no.clone(), vec!["--heat"]),
+        ("picture", vec![&t0, "--size", "64x64", "--out", &png], no.clone(), vec!["--fit", "all"]),
+        (
+            "picture",
+            vec![&t0, &t1, &t0, "--size", "64x64", "--out", &frames],
+            vec!["--fit", "all"],
+            vec!["--fit", "frame"],
+        ),
         ("detect", vec![&t0], no.clone(), vec!["--json"]),
         ("detect", vec![&t0], no.clone(), vec!["--verbose"]),
         ("detect", vec![&t0, &t1, &t0, "--json"], no.clone(), vec!["--repeat", "3"]),
@@ -204,6 +220,18 @@ fn every_option_changes_something_or_is_refused() {
         ("picture", vec![&t0, "--size", "64x64", "--out", &png], no.clone(), vec!["--time", "0.5"]),
         ("picture", vec![&t0, "--out", &png], vec!["--size", "64x64"], vec!["--size", "64x32"]),
         ("picture", vec![&t0, "--size", "64x64"], no.clone(), vec!["--out", &png]),
+        // Faults of meshes.
+        ("check", vec![&quads, "--json"], no.clone(), vec!["--first", "0"]),
+        ("check", vec![&quads], no.clone(), vec!["--json"]),
+        ("check", vec![&seam], no.clone(), vec!["--allow-touching"]),
+        ("check", vec![&seam], no.clone(), vec!["--weld"]),
+        ("check", vec![&note], no.clone(), vec!["--strict"]),
+        ("check", vec![&t0, &other], no.clone(), vec!["--each"]),
+        ("check", vec![&t0], no.clone(), vec!["--each"]),
+        ("check", vec![&t0], no.clone(), vec!["--out-mesh", &ply]),
+        ("check", vec![&t0], no.clone(), vec!["--picture", &png]),
+        ("check", vec![&t0, "--backend", "cuda"], no.clone(), vec!["--threads", "1"]),
+        ("check", vec![&t0, "--threads", "1"], vec!["--backend", "cpu"], vec!["--backend", "cuda"]),
         // One pair.
         ("explain", vec![&t0, &t1], vec!["--vf", "0", "3"], vec!["--vf", "0", "4"]),
         ("explain", vec![&t0, "--vf", "0", "3"], no.clone(), vec!["--with", &other]),

@@ -43,13 +43,13 @@ fn notes_are_told_and_strict_refuses_them() {
     let bow = "v 0 0 5\nv 2 2 5\nv 2 0 5\nv 0 2 5\nf 8 9 10 11\n";
     let note = |lines: &str| match lines {
         "f 1 2\n" => "1 face was left out; the first: line 10: a face with 2 corners",
-        "l 1 2\nl 1 2\n" => "2 lines were not read; the first: line 10 begins with \"l\"",
+        "curv 0 1 1 2\ncurv 0 1 1 2\n" => "2 lines were not read; the first: line 10 begins with \"curv\"",
         "foo\n" => "1 line was skipped; the first: line 10 begins with \"foo\"",
         _ => {
             "1 face was cut as a fan around the first corner; the first: face 2, with 4 corners, crosses itself"
         }
     };
-    for lines in [bow, "f 1 2\n", "l 1 2\nl 1 2\n", "foo\n"] {
+    for lines in [bow, "f 1 2\n", "curv 0 1 1 2\ncurv 0 1 1 2\n", "foo\n"] {
         let mesh = folder.write("mesh.obj", &format!("{MEET}{lines}"));
         let scene = folder.write("scene.toml", "[[body]]\nmesh = \"mesh.obj\"\n");
         let said = format!("mesh.obj: {}", note(lines));

@@ -26,6 +26,9 @@ fn numbers_below_zero_reach_the_checks() {
     for args in [
         &["detect", "a.ply", "--threads"][..],
         &["detect", "a.ply", "--repeat"],
+        &["detect", "a.ply", "--problems"],
+        &["check", "a.ply", "--problems"],
+        &["check", "a.ply", "--first"],
         &["detect", "a.ply", "--max-iterations"],
         &["detect", "a.ply", "--budget"],
         &["detect", "a.ply", "--cores"],

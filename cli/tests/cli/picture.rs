@@ -8,10 +8,10 @@ const MESH: &str = "v -3 0 -3\nv 3 0 -3\nv 0 0 3\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\n
                     f 1 2 3\nf 4 5 6\nf 7 8 9\n";
 
 /// A picture's width, height and pixels.
-struct Png(usize, usize, Vec<u8>);
+pub struct Png(pub usize, pub usize, Vec<u8>);
 
 impl Png {
-    fn read(path: &str) -> Png {
+    pub fn read(path: &str) -> Png {
         let file = std::io::BufReader::new(std::fs::File::open(path).expect("written"));
         let mut reader = png::Decoder::new(file).read_info().expect("a PNG");
         let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
@@ -20,7 +20,7 @@ impl Png {
         Png(head.width as usize, head.height as usize, pixels)
     }
 
-    fn at(&self, x: usize, y: usize) -> [i32; 3] {
+    pub fn at(&self, x: usize, y: usize) -> [i32; 3] {
         let at = 3 * (y * self.0 + x);
         [0, 1, 2].map(|c| i32::from(self.2[at + c]))
     }
@@ -36,7 +36,7 @@ fn is_red([r, g, b]: [i32; 3]) -> bool {
 }
 
 /// The light colour around the bodies.
-const PAPER: [i32; 3] = [246, 247, 249];
+pub const PAPER: [i32; 3] = [246, 247, 249];
 
 fn drawn(asked: &[&str], out: &str) -> (Png, String) {
     let front = ["--backend", "cpu", "--view", "0,-1,0", "--out", out];
@@ -185,13 +185,13 @@ fn what_cannot_be_drawn_is_refused_before_the_work() {
     }
     for idle in [&["--earliest"][..], &["--repeat", "2"], &["--json"], &["--out-mesh", "a.ply"]] {
         let text = more(&[&["--out", "a.png"], idle].concat());
-        assert!(text.contains("has no effect: a picture shows one frame"), "{text}");
+        assert!(text.contains("has no effect: a picture shows a frame"), "{text}");
     }
     let folder = Folder::new("picture-refused");
     let mesh = folder.write("mesh.obj", MESH);
     let out = folder.path("a.png");
     let several = refused(2, &["picture", &mesh, &mesh, &mesh, "--out", &out]);
-    assert!(several.contains("a picture shows one step or frame, got 2; give"), "{several}");
+    assert!(several.contains("--out must have a # for the number of each of 2 frames, got "), "{several}");
     assert!(!std::path::Path::new(&out).exists());
     let nowhere = folder.path("no/a.png");
     assert!(refused(4, &["picture", "no.ply", "--out", &nowhere]).contains("no/a.png: cannot be written"));

@@ -180,7 +180,7 @@ fn places_of_a_sequence_have_their_steps_and_names() {
     assert_eq!(normal.as_array().map(Vec::len), Some(3), "{told}");
     // A file holds one mesh.
     let several = refused(2, &["detect", &scene, "--out-mesh", &folder.path("a.ply")]);
-    assert!(several.contains("--out-mesh holds one step or frame, got 2"), "{several}");
+    assert!(several.contains("--out-mesh must have a # for the number of each of 2 frames"), "{several}");
 }
 
 #[test]

@@ -240,7 +240,7 @@ fn what_is_wrong_with_a_file_is_named() {
         (format!("{tip}name = 3"), vec!["line 8", "duplicate key"]),
         ("mesh = ".into(), vec!["line 7", "[[body]]"]),
         ("mesh = \"parts/none.obj\"".into(), vec!["none.obj: cannot be read"]),
-        ("mesh = \"parts/tip.stl\"".into(), vec!["tip.stl: has the extension \"stl\""]),
+        ("mesh = \"parts/tip.3mf\"".into(), vec!["tip.3mf: has the extension \"3mf\""]),
         (
             format!("{}\n[[body]]\nmesh = \"parts/tip.obj\"", poses("[{}, {}, {}]")),
             vec!["body \"tip\" (line 10) has the name of body \"tip\" (line 5)", "its own `name`"],
@@ -262,7 +262,7 @@ fn what_is_wrong_with_a_file_is_named() {
             let message = refused(3, &[super::path(command), vec![path.as_str()]].concat());
             assert_eq!(message.lines().count(), 1, "{message}");
             assert!(
-                said[0].ends_with("read") || said[0].contains(".stl") || message.contains("scene.toml: "),
+                said[0].ends_with("read") || said[0].contains(".3mf") || message.contains("scene.toml: "),
                 "{message}"
             );
             for word in &said {

@@ -68,11 +68,12 @@ fn rows_tell_their_step() {
             let text = folder.read("a.csv");
             let (head, own) = text.split_once('\n').expect("a head");
             if step == 0 {
-                rows = format!("step,{head}\n");
+                rows = format!("step,frame,file,{head}\n");
             }
-            rows.extend(own.lines().map(|line| format!("{step},{line}\n")));
+            let first = &files[0];
+            rows.extend(own.lines().map(|line| format!("{step},{step},{first},{line}\n")));
             if own.is_empty() && question == ["--earliest"] {
-                rows.push_str(&format!("{step},\n"));
+                rows.push_str(&format!("{step},{step},{first},\n"));
             }
             ok(&with(files, &[question, fixed, &["--out", &json]].concat()));
             objects.push(
@@ -93,7 +94,7 @@ fn rows_tell_their_step() {
                 (Some(at as u64), Some(at as u64))
             );
             let line =
-                people.lines().find(|line| line.starts_with(&format!("{name} {at}: "))).expect("a line");
+                people.lines().find(|line| line.starts_with(&format!("{name} {at} ("))).expect("a line");
             let hash = step["summary"]["hash"].as_str().expect("a hash");
             assert!(line.ends_with(&format!("hash {hash}")) && line.contains("wall "), "{line}");
         }
@@ -131,7 +132,7 @@ fn another_mesh_rests_or_has_as_many_frames() {
     assert!(text.contains("equal numbers of frames, got 3 and 2; give as many files"), "{text}");
     // A step without motion is reported.
     let text = ok(&["detect", &b0, &b0, &b1, "--with", &floor]);
-    assert!(text.contains("step 0: ") && text.matches("both frames are the same").count() == 1, "{text}");
+    assert!(text.contains("step 0 (") && text.matches("both frames are the same").count() == 1, "{text}");
 }
 
 #[test]
@@ -180,7 +181,7 @@ fn frames_of_both_precisions_are_taken() {
     let wide = folder.write("b2.ply", &format!("{header}0.25 0.25 -1\n0.25 0.5 3\n5 5 3\n3 0 1 2\n"));
     let text = ok(&["detect", &b0, &b1, &wide, "--with", &floor, "--earliest"]);
     assert!(
-        text.contains("step 0: no contact; ") && text.contains(", first in step 1 at t = 0.49"),
+        text.contains("b0.obj): no contact; ") && text.contains(", first in step 1 at t = 0.49"),
         "{text}"
     );
 }

@@ -1,18 +1,20 @@
-//! OBJ files to positions and faces: the keywords `v` and `f`. All others are counted, or known to
-//! hold neither.
+//! OBJ files to positions and faces: the keywords `v`, `f`, `l` and `p`. All others are counted, or
+//! known to hold no geometry.
 
 mod word;
 
 use crate::mesh_file::Parsed;
 use crate::note::{Notes, Treated};
 use crate::polygons::Fans;
+use crate::problems::Problems;
 use crate::shown::shown;
-use nearmiss::mesh::{ObjProblem, Positions, Problem};
+use crate::welded::positions;
+use nearmiss::mesh::{ObjProblem, Problem};
 use word::Word;
 
 /// Reads the whole file. Lines end in LF, CR LF or CR. Coordinates are parsed as doubles and kept
 /// as floats only if each is one exactly.
-pub(crate) fn read(bytes: &[u8]) -> Result<Parsed, Problem> {
+pub(crate) fn read(bytes: &[u8], problems: &mut Problems) -> Result<Parsed, Problem> {
     let mut obj = Obj::default();
     let mut joined = Vec::new();
     let mut first = 0;
@@ -22,24 +24,24 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Parsed, Problem> {
             first = i + 1;
         } else if let Some(word @ (b"v" | b"f")) = words(line).next() {
             // No argument has that form: a vertex or a face would be lost.
-            return Err(ObjProblem::Joined { line: i, found: shown(word) }.into());
+            problems.add(ObjProblem::Joined { line: i, found: shown(word) })?;
         }
         // A comment that ends in a backslash, such as a path, does not continue on the next line.
         if let Some(part) = line.strip_suffix(b"\\").filter(|part| !part.contains(&b'#')) {
             joined.extend_from_slice(part);
             joined.push(b' ');
         } else if joined.is_empty() {
-            obj.line(first, line)?;
+            obj.line(first, line).or_else(|problem| problems.add(problem))?;
         } else {
             joined.extend_from_slice(line);
-            obj.line(first, &joined)?;
+            obj.line(first, &joined).or_else(|problem| problems.add(problem))?;
             joined.clear();
         }
     }
     if !joined.is_empty() {
-        obj.line(first, &joined)?;
+        obj.line(first, &joined).or_else(|problem| problems.add(problem))?;
     }
-    obj.finish()
+    obj.finish(problems)
 }
 
 /// Lines without their ends.
@@ -66,8 +68,9 @@ struct Obj {
     points: Vec<[f64; 3]>,
     faces: Fans,
     notes: Notes,
-    /// The line and the index of the largest reference to a vertex that is not defined yet.
-    ahead: Option<(usize, i64)>,
+    /// Lines and indices of references to vertices that are not defined yet: each larger than those
+    /// before it.
+    ahead: Vec<(usize, i64)>,
 }
 
 impl Obj {
@@ -81,6 +84,10 @@ impl Obj {
         match Word::of(word) {
             Word::Vertex => self.vertex(line, words)?,
             Word::Face => self.face(line, words)?,
+            Word::Line => self.segments(line, words)?,
+            Word::Point => {
+                words.try_for_each(|word| self.corner(line, word).map(|a| self.faces.single([a, a, a])))?
+            }
             Word::Quiet => {}
             Word::Element => {
                 self.notes.add(Treated::NotRead, || ObjProblem::Element { line, found: shown(word) }.into())
@@ -99,6 +106,8 @@ impl Obj {
         mut words: impl Iterator<Item = &'a [u8]>,
     ) -> Result<(), ObjProblem> {
         let vertex = self.points.len();
+        // Even if it is wrong: other problems keep their numbers.
+        self.points.push([0.0; 3]);
         let mut point = [0.0; 3];
         for (found, (x, axis)) in point.iter_mut().zip(['x', 'y', 'z']).enumerate() {
             let word = words.next().ok_or(ObjProblem::ShortVertex { line, found })?;
@@ -109,7 +118,7 @@ impl Obj {
                 return Err(ObjProblem::LongVertex { line, vertex, found: shown(word) });
             }
         }
-        self.points.push(point);
+        self.points[vertex] = point;
         Ok(())
     }
 
@@ -122,6 +131,17 @@ impl Obj {
         }
         if corners < 3 {
             self.faces.leave_out(corners as u64);
+            self.notes.add(Treated::LeftOut, || ObjProblem::ShortFace { line, corners }.into());
+        }
+        Ok(())
+    }
+
+    /// The segments of a line, from each corner to the next.
+    fn segments<'a>(&mut self, line: usize, words: impl Iterator<Item = &'a [u8]>) -> Result<(), ObjProblem> {
+        let corners: Vec<u32> = words.map(|word| self.corner(line, word)).collect::<Result<_, _>>()?;
+        corners.windows(2).for_each(|ends| self.faces.single([ends[0], ends[1], ends[1]]));
+        if corners.len() < 2 {
+            let corners = corners.len();
             self.notes.add(Treated::LeftOut, || ObjProblem::ShortFace { line, corners }.into());
         }
         Ok(())
@@ -147,25 +167,18 @@ impl Obj {
             return Err(ObjProblem::Back { line, index, vertices });
         }
         let index_u32 = u32::try_from(from_0).map_err(|_| ObjProblem::Index { line, index, vertices })?;
-        if from_0 >= vertices as i64 && self.ahead.is_none_or(|(_, largest)| largest < index) {
-            self.ahead = Some((line, index));
+        if from_0 >= vertices as i64 && self.ahead.last().is_none_or(|(_, largest)| *largest < index) {
+            self.ahead.push((line, index));
         }
         Ok(index_u32)
     }
 
-    fn finish(self) -> Result<Parsed, Problem> {
+    fn finish(self, problems: &mut Problems) -> Result<Parsed, Problem> {
         let vertices = self.points.len();
-        if let Some((line, index)) = self.ahead.filter(|&(_, index)| index > vertices as i64) {
-            return Err(ObjProblem::Index { line, index, vertices }.into());
+        for (line, index) in self.ahead.into_iter().rev().take_while(|(_, index)| *index > vertices as i64) {
+            problems.add(ObjProblem::Index { line, index, vertices })?;
         }
-        // NaN is a float too.
-        let is_float = |x: &f64| x.is_nan() || f64::from(*x as f32).to_bits() == x.to_bits();
-        let positions = if self.points.iter().flatten().all(is_float) {
-            Positions::F32(self.points.iter().map(|p| p.map(|x| x as f32)).collect())
-        } else {
-            Positions::F64(self.points)
-        };
-        Ok(Parsed { positions, fans: self.faces, notes: self.notes })
+        Ok(Parsed { positions: positions(self.points), fans: self.faces, notes: self.notes })
     }
 }
 

@@ -6,9 +6,13 @@
 pub(super) enum Word {
     Vertex,
     Face,
+    /// Segments from each corner to the next.
+    Line,
+    /// Points.
+    Point,
     /// Without a surface, and makes none: names, materials, texture coordinates, normals, display.
     Quiet,
-    /// With geometry that is not a face: points, lines, curves, surfaces, another file.
+    /// With geometry that is not read: curves, surfaces, another file.
     Element,
     /// No word of the specification, but similar to `v` or `f`: a vertex or a face may be lost with
     /// it.
@@ -56,7 +60,7 @@ const QUIET: [&[u8]; 32] = [
 
 /// Statements with geometry that is not read; `call` and `csh` insert the output of another file or
 /// program.
-const ELEMENTS: [&[u8]; 10] = [b"p", b"l", b"curv", b"surf", b"bsp", b"bzp", b"cdc", b"cdp", b"call", b"csh"];
+const ELEMENTS: [&[u8]; 8] = [b"curv", b"surf", b"bsp", b"bzp", b"cdc", b"cdp", b"call", b"csh"];
 
 impl Word {
     pub fn of(word: &[u8]) -> Word {
@@ -64,6 +68,8 @@ impl Word {
             b"v" => Word::Vertex,
             // Versions before 3.0 had `fo` for a face.
             b"f" | b"fo" => Word::Face,
+            b"l" => Word::Line,
+            b"p" => Word::Point,
             _ if QUIET.contains(&word) => Word::Quiet,
             _ if ELEMENTS.contains(&word) => Word::Element,
             _ if is_nearly(word) => Word::Misspelt,

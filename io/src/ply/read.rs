@@ -8,6 +8,7 @@ use super::source::{Failure, Scalar, Source, Value};
 use crate::mesh_file::Parsed;
 use crate::note::{Notes, Treated};
 use crate::polygons::Fans;
+use crate::problems::Problems;
 use crate::shown::shown;
 use nearmiss::mesh::{MAX_FACES, MAX_VERTICES, PlyProblem, Positions, Problem};
 
@@ -15,7 +16,7 @@ use nearmiss::mesh::{MAX_FACES, MAX_VERTICES, PlyProblem, Positions, Problem};
 const QUIET: [&str; 5] = ["edge", "material", "camera", "user", "range_grid"];
 
 /// Reads the whole file; faces keep the file's order.
-pub(crate) fn read(bytes: &[u8]) -> Result<Parsed, Problem> {
+pub(crate) fn read(bytes: &[u8], problems: &mut Problems) -> Result<Parsed, Problem> {
     let header = Header::read(bytes)?;
     let vertex = header.elements.iter().find(|e| e.name == "vertex").ok_or(PlyProblem::NoVertices)?;
     let mut source = Source::new(&bytes[header.size..], header.encoding);
@@ -25,7 +26,8 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Parsed, Problem> {
         promise(element, &source)?;
         match element.name {
             "vertex" => positions = vertices(element, &mut source)?,
-            "face" => fans = polygons(element, vertex.count, (&mut source, &mut notes))?,
+            "face" => polygons(element, vertex.count, &mut source, (&mut fans, &mut notes, problems))?,
+            "tristrips" => strips(element, vertex.count, &mut source, (&mut fans, problems))?,
             _ if element.properties.is_empty() => {} // any number of entries, no room
             name => {
                 entries(element, &mut source, |_, _, _, _| Ok(()))?;
@@ -82,7 +84,7 @@ fn coordinates<T: Copy + Default>(
     source: &mut Source<'_>,
     columns: [usize; 3],
     convert: fn(Value) -> T,
-) -> Result<Vec<[T; 3]>, PlyProblem> {
+) -> Result<Vec<[T; 3]>, Problem> {
     let mut points = Vec::with_capacity(element.count as usize); // the file holds as many: see `promise`
     entries(element, source, |index, column, _, value| {
         if points.len() as u64 == index {
@@ -114,18 +116,64 @@ fn to_f64(value: Value) -> f64 {
     }
 }
 
+/// The column of the corners of an element.
+fn corners(element: &Element<'_>) -> Result<usize, PlyProblem> {
+    let mut lists = element.properties.iter().enumerate().filter(|(_, p)| is_corners(p.name));
+    match (lists.next(), lists.next()) {
+        (Some((column, Property { kind: Kind::List { .. }, .. })), None) => Ok(column),
+        (Some(_), Some(_)) => Err(PlyProblem::TwoCorners),
+        _ => Err(PlyProblem::NoCorners),
+    }
+}
+
+/// The fault of an index of a vertex, if it has one.
+fn index_fault(face: u64, corner: u64, index: i64, vertices: u64) -> Option<PlyProblem> {
+    match index {
+        ..0 => Some(PlyProblem::NegativeIndex { face, corner, index }),
+        _ if index as u64 >= vertices => Some(PlyProblem::Index { face, corner, index, vertices }),
+        _ => None,
+    }
+}
+
+/// Reads strips of triangles; -1 ends one and begins the next.
+fn strips(
+    element: &Element<'_>,
+    vertices: u64,
+    source: &mut Source<'_>,
+    (faces, problems): (&mut Fans, &mut Problems),
+) -> Result<(), Problem> {
+    let column = corners(element)?;
+    let (mut last, mut turned) = ([None; 2], false);
+    entries(element, source, |strip, at, item, value| {
+        match (item, value) {
+            _ if at != column => {}
+            (Item::Length, _) | (Item::At(_), Value::Int(-1)) => (last, turned) = ([None; 2], false),
+            (Item::At(corner), Value::Int(index)) => {
+                if let Some(problem) = index_fault(strip, corner, index, vertices) {
+                    return problems.add(problem);
+                }
+                let vertex = index as u32;
+                if let [Some(a), Some(b)] = last {
+                    faces.of_strip([a, b, vertex], turned);
+                    turned = !turned;
+                }
+                last = [last[1], Some(vertex)];
+            }
+            _ => {}
+        }
+        Ok(())
+    })?;
+    within("triangles", faces.faces.len() as u64, MAX_FACES)
+}
+
 fn polygons(
     element: &Element<'_>,
     vertices: u64,
-    (source, notes): (&mut Source<'_>, &mut Notes),
-) -> Result<Fans, Problem> {
-    let mut lists = element.properties.iter().enumerate().filter(|(_, p)| is_corners(p.name));
-    let column = match (lists.next(), lists.next()) {
-        (Some((column, Property { kind: Kind::List { .. }, .. })), None) => column,
-        (Some(_), Some(_)) => return Err(PlyProblem::TwoCorners.into()),
-        _ => return Err(PlyProblem::NoCorners.into()),
-    };
-    let mut faces = Fans::of(element.count as usize); // see `promise`
+    source: &mut Source<'_>,
+    (faces, notes, problems): (&mut Fans, &mut Notes, &mut Problems),
+) -> Result<(), Problem> {
+    let column = corners(element)?;
+    faces.faces.reserve(element.count as usize); // see `promise`
     let mut corners = 0;
     entries(element, source, |face, at, item, value| {
         let Value::Int(index) = value else { return Ok(()) };
@@ -141,12 +189,11 @@ fn polygons(
                 }
             }
             Item::At(corner) => {
-                if index < 0 {
-                    return Err(PlyProblem::NegativeIndex { face, corner, index });
-                }
-                if index as u64 >= vertices {
-                    return Err(PlyProblem::Index { face, corner, index, vertices });
-                }
+                // A corner stays a corner even if it is wrong.
+                let index = match index_fault(face, corner, index, vertices) {
+                    Some(problem) => problems.add(problem).map(|()| 0)?,
+                    None => index,
+                };
                 faces.corner(corner, index as u32); // below 2^32, as every whole number of PLY
                 if corners < 3 && corner + 1 == corners {
                     faces.leave_out(corners);
@@ -156,8 +203,7 @@ fn polygons(
         }
         Ok(())
     })?;
-    within("triangles", faces.faces.len() as u64, MAX_FACES)?;
-    Ok(faces)
+    within("triangles", faces.faces.len() as u64, MAX_FACES)
 }
 
 /// Refuses a count that exceeds a mesh's limit, before there is a mesh.
@@ -179,8 +225,8 @@ enum Item {
 fn entries(
     element: &Element<'_>,
     source: &mut Source<'_>,
-    mut each: impl FnMut(u64, usize, Item, Value) -> Result<(), PlyProblem>,
-) -> Result<(), PlyProblem> {
+    mut each: impl FnMut(u64, usize, Item, Value) -> Result<(), Problem>,
+) -> Result<(), Problem> {
     for index in 0..element.count {
         source.begin_entry();
         for (column, property) in element.properties.iter().enumerate() {
@@ -199,7 +245,7 @@ fn entries(
         let extra = source.end_entry();
         if !extra.is_empty() {
             let element = shown(element.name.as_bytes());
-            return Err(PlyProblem::LongLine { element, index, found: shown(extra) });
+            return Err(PlyProblem::LongLine { element, index, found: shown(extra) }.into());
         }
     }
     Ok(())

@@ -6,7 +6,7 @@ Functions for one mesh:
     near(vertices, faces, distance)        features within a distance, and their nearest points
     contacts(t0, t1, faces)                features that meet in a step, with certified times
     time_of_impact(t0, t1, faces)          safe part of a step, never late
-    read_mesh(path)                        vertices and faces of a PLY or OBJ file
+    read_mesh(path)                        vertices and faces of a mesh file
 
 A detector keeps a scene on a device and answers any number of queries, with one upload of positions:
 

@@ -22,7 +22,7 @@ def is_on_gpu(object: Any) -> bool:
     """Return whether an array is in the memory of an NVIDIA GPU."""
 
 def read_mesh(path: Union[str, PathLike[str]], *, strict: bool = False) -> tuple[NDArray[Any], NDArray[np.uint32]]:
-    """Read a PLY or OBJ file, also with .gz appended.
+    """Read a PLY, OBJ, STL, OFF or glTF file, also with .gz appended.
 
     - `path`: the file.
     - `strict`: raise InputError for each part of the file that would be skipped or cut otherwise.

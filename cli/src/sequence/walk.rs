@@ -1,0 +1,72 @@
+//! A detector that goes through a sequence, step by step.
+
+use super::Sequence;
+use crate::args::DetectArgs;
+use crate::progress::during;
+use nearmiss::contacts::Contacts;
+use nearmiss::error::Error;
+use nearmiss::query::{Discrete, Query, QueryKind};
+use nearmiss::scene::Scene;
+use nearmiss_lab::OneQuery;
+use std::ops::DerefMut;
+
+/// A detector, and the sequence that it goes through.
+pub struct Walk<'a> {
+    pub all: &'a Sequence,
+    pub detector: OneQuery,
+    at_rest: bool,
+    rebuild_every: Option<u32>,
+}
+
+impl Walk<'_> {
+    /// A detector that begins where the first step does.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new<'a>(
+        args: &DetectArgs,
+        all: &'a Sequence,
+        (scene, query): (Scene, Query),
+    ) -> Result<Walk<'a>, Error> {
+        let device = args.machine.open()?;
+        let at_rest = query.kind().is_at_rest();
+        let detector = during("building", || OneQuery::new(device, scene, query))?;
+        Ok(Walk { all, detector, at_rest, rebuild_every: args.research.rebuild_every })
+    }
+
+    /// The answer at a step.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn at(&mut self, step: usize) -> Result<Contacts, Error> {
+        during(format!("step {step}"), || self.answer(step))
+    }
+
+    fn answer(&mut self, step: usize) -> Result<Contacts, Error> {
+        let anew = self.rebuild_every.is_some_and(|every| (step as u64).is_multiple_of(every.into()));
+        let inputs = self.all.inputs(self.detector.scene(), step, self.at_rest);
+        match step {
+            0 => self.detector.detect(),
+            _ if anew => {
+                self.detector.update(&inputs)?;
+                self.detector.rebuild()?;
+                self.detector.detect()
+            }
+            _ => self.detector.frame(&inputs),
+        }
+    }
+
+    /// How many triangle pairs share a point in this frame, for queries at rest whose rows do not
+    /// show it.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn crossing(&mut self) -> Result<Option<u64>, Error> {
+        match self.detector.query().kind() {
+            QueryKind::Near | QueryKind::Distance | QueryKind::BodyDistances => {
+                Ok(Some(self.detector.deref_mut().query(&Discrete::default())?.len() as u64))
+            }
+            _ => Ok(None),
+        }
+    }
+}
