@@ -43,8 +43,8 @@ use crate::stage::fit::{
 use crate::stage::narrow::discrete::{Start, Still};
 use crate::stage::narrow::placed::Placed;
 use crate::stage::narrow::{
-    abreast, below_precision, bodies as narrow_bodies, certain, climb, cull, discrete, divide, exclude,
-    features, near, nearest, separate, slice, solve, turning,
+    abreast, approach, below_precision, bodies as narrow_bodies, certain, climb, cull, discrete, divide,
+    exclude, features, near, nearest, separate, slice, solve, turning,
 };
 use crate::stage::refit::{levels, meshes as refit_of_meshes, tiles as refit_of_tiles, treelets};
 use crate::stage::traverse::instances::{
@@ -204,6 +204,8 @@ kernels! {
     narrow_separate_f64_f64: separate::separate::<f64, B>, [RungArgs<f64>], RUNG, separate::shared_bytes(RUNG);
     narrow_separate_thick_f32: separate::thick::<f32, B>, [ThickRungArgs<f32>], RUNG, separate::shared_bytes(RUNG);
     narrow_separate_thick_f64: separate::thick::<f64, B>, [ThickRungArgs<f64>], RUNG, separate::shared_bytes(RUNG);
+    narrow_approach_f32: approach::approach::<f32, B>, [ThickRungArgs<f32>], NARROW, 0;
+    narrow_approach_f64: approach::approach::<f64, B>, [ThickRungArgs<f64>], NARROW, 0;
     narrow_divide: divide::divide, [DivideArgs], WIDE, 0;
     narrow_turning_features: turning::features, [TurningFeaturesArgs], turning::LANES, turning::SHARED;
     narrow_turning: turning::solve, [TurningArgs], NARROW, 0;

@@ -106,6 +106,10 @@ counters! { 0;
     VF_ESCALATED,
     /// Edge/edge pairs that f32 leaves to f64.
     EE_ESCALATED,
+    /// Vertex/face pairs that are left for the solver by a query of what approaches.
+    VF_APPROACHING,
+    /// Edge/edge pairs that it leaves.
+    EE_APPROACHING,
     /// Hits that are neither certain contacts nor certainly none.
     UNDECIDED,
     /// Vertex/face pairs that isolation leaves.

@@ -13,117 +13,11 @@
 //! (every finite f32 has 277) and 2098 bits (every finite f64). Their steps are out of line: they
 //! are rare, and a GPU compiles them at first use. Loops run over the limbs in use.
 
+mod int;
+
 use super::orient::plane_of;
 use crate::math::{Real, Vec3};
-use core::cmp::Ordering;
-
-/// A signed integer of at most `N` limbs of 32 bits: sign and magnitude. Limbs from `len` on are 0,
-/// the one before is not.
-#[derive(Clone, Copy)]
-struct Int<const N: usize> {
-    negative: bool,
-    len: usize,
-    limb: [u32; N],
-}
-
-impl<const N: usize> Int<N> {
-    const ZERO: Self = Int { negative: false, len: 0, limb: [0; N] };
-
-    /// `x / 2^grid`, if the grid divides `x`.
-    #[inline(never)]
-    fn of<R: Real>(x: R, grid: i32) -> Self {
-        let p = x.parts();
-        let mut r = Self::ZERO;
-        if p.mantissa == 0 {
-            return r;
-        }
-        // Bits below the grid are zeros: shift them out first.
-        let (mantissa, shift) = if p.exponent < grid {
-            (p.mantissa >> (grid - p.exponent) as u32, 0)
-        } else {
-            (p.mantissa, (p.exponent - grid) as u32)
-        };
-        let at = (shift / 32) as usize;
-        let (low, high) = ((mantissa << 32 >> 32) << (shift % 32), (mantissa >> 32) << (shift % 32));
-        let words = [low as u32, ((low >> 32) + (high & 0xffff_ffff)) as u32, (high >> 32) as u32];
-        for (to, from) in r.limb.iter_mut().skip(at).zip(words) {
-            *to = from;
-        }
-        r.negative = p.negative;
-        r.trim(at + 3);
-        r
-    }
-
-    /// Sets `len`, knowing that limbs from `from` on are 0.
-    fn trim(&mut self, from: usize) {
-        self.len = from.min(N);
-        while self.len > 0 && self.limb.get(self.len - 1) == Some(&0) {
-            self.len -= 1;
-        }
-    }
-
-    fn sign(&self) -> i32 {
-        match (self.len, self.negative) {
-            (0, _) => 0,
-            (_, true) => -1,
-            (_, false) => 1,
-        }
-    }
-
-    fn cmp_magnitude(&self, o: &Self) -> Ordering {
-        let by_len = self.len.cmp(&o.len);
-        let pairs = self.limb.iter().zip(&o.limb).take(self.len).rev();
-        by_len.then_with(|| pairs.map(|(a, b)| a.cmp(b)).find(|c| c.is_ne()).unwrap_or(Ordering::Equal))
-    }
-
-    /// `self - o`. The sizes of the module text leave room for the carry.
-    #[inline(never)]
-    fn minus(&self, o: &Self) -> Self {
-        let mut r = Self::ZERO;
-        let n = self.len.max(o.len);
-        if self.negative != o.negative || self.len == 0 || o.len == 0 {
-            // Magnitudes add up.
-            r.negative = if self.len == 0 { !o.negative } else { self.negative };
-            let mut carry = 0u64;
-            for (t, (a, b)) in r.limb.iter_mut().zip(self.limb.iter().zip(&o.limb)).take(n + 1) {
-                carry += *a as u64 + *b as u64;
-                *t = carry as u32;
-                carry >>= 32;
-            }
-            r.trim(n + 1);
-        } else {
-            let order = self.cmp_magnitude(o);
-            let (big, small) = if order.is_lt() { (o, self) } else { (self, o) };
-            r.negative = self.negative != order.is_lt();
-            let mut borrow = 0i64;
-            for (t, (a, b)) in r.limb.iter_mut().zip(big.limb.iter().zip(&small.limb)).take(n) {
-                borrow += *a as i64 - *b as i64;
-                *t = borrow as u32;
-                borrow >>= 32;
-            }
-            r.trim(n);
-        }
-        r
-    }
-
-    /// `self * o`; their lengths must add up to at most `P`.
-    #[inline(never)]
-    fn times<const M: usize, const P: usize>(&self, o: &Int<M>) -> Int<P> {
-        let mut r = Int::<P>::ZERO;
-        for (i, a) in self.limb.iter().enumerate().take(self.len) {
-            let mut carry = 0u64;
-            let (a, digits) = (*a as u64, o.limb.iter().chain(core::iter::once(&0)));
-            for (t, b) in r.limb.iter_mut().skip(i).zip(digits).take(o.len + 1) {
-                carry += a * *b as u64 + *t as u64;
-                *t = carry as u32;
-                carry >>= 32;
-            }
-        }
-        r.negative = self.negative != o.negative;
-        r.trim(self.len + o.len);
-        r
-    }
-}
+pub(super) use int::Int;
 
 /// Per axis the exponent of the common grid; and the most bits that an axis spans.
 fn grid<R: Real, const K: usize>(points: [Vec3<R>; K]) -> ([i32; 3], i32) {
@@ -141,6 +35,16 @@ fn grid<R: Real, const K: usize>(points: [Vec3<R>; K]) -> ([i32; 3], i32) {
         }
     }
     (low, bits)
+}
+
+/// The exponent of the grid that all coordinates are on, and the bits that they span.
+pub(super) fn common_grid<R: Real>(points: &[[Vec3<R>; 2]; 4]) -> (i32, i32) {
+    let (mut least, mut most) = (i32::MAX, i32::MIN);
+    for x in points.iter().flatten().flat_map(|p| p.0).map(Real::parts).filter(|x| x.mantissa != 0) {
+        least = least.min(x.exponent + x.mantissa.trailing_zeros() as i32);
+        most = most.max(x.exponent + 64 - x.mantissa.leading_zeros() as i32);
+    }
+    if most > least { (least, most - least) } else { (0, 0) }
 }
 
 /// Most bits of one axis for the smallest size. Differences (61 bits) fit i64, minors (123) i128.

@@ -11,6 +11,7 @@
 //! | [`cubic`] | continuous, the coplanarity cubic; the paper's | can miss |
 //! | [`isolate`] | continuous, in closed form | no miss, never late |
 //! | [`inclusion`] | continuous, by boxes, behind [`isolate`] | no miss, never late |
+//! | [`approach`] | whether two features come nearer than at the start | exact, or undecided |
 //! | [`near`] | distance of two features at rest | proven bounds |
 //! | [`nearest`] | distance of two triangles at rest | proven bounds |
 //!
@@ -18,6 +19,7 @@
 //! selects those whose boxes meet. [`direction`] first leaves out triangles that need none of them.
 
 pub mod adjacent;
+pub mod approach;
 pub mod at_once;
 pub mod balls;
 pub mod crossing;

@@ -19,9 +19,11 @@
 //! Pairs of bodies that turn take another way: [`divide`] takes them out of the candidates, and
 //! [`turning`] tests them on their paths.
 //! A scene that excludes pairs has [`mod@exclude`] behind the signs of triangles, and before a solver.
+//! A query of what approaches has [`mod@approach`] before its solver.
 //! [`below_precision`] counts contacts that are too large for the tolerance, if any can be.
 
 pub mod abreast;
+pub mod approach;
 pub mod below_precision;
 pub mod bodies;
 pub mod certain;
