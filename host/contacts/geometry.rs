@@ -77,19 +77,21 @@ pub struct Named {
     pub features: [u32; 2],
     /// Time at which the features are evaluated.
     pub time: f64,
+    /// Time of a contact, or distance of a near pair.
+    pub measure: f64,
 }
 
 impl From<&Contact> for Named {
     fn from(contact: &Contact) -> Named {
         let Contact { kind, bodies, feature_a, feature_b, toi, .. } = *contact;
-        Named { kind, bodies, features: [feature_a, feature_b], time: toi }
+        Named { kind, bodies, features: [feature_a, feature_b], time: toi, measure: toi }
     }
 }
 
 impl From<&NearPair> for Named {
     fn from(pair: &NearPair) -> Named {
         let NearPair { kind, bodies, feature_a, feature_b, .. } = *pair;
-        Named { kind, bodies, features: [feature_a, feature_b], time: 0.0 }
+        Named { kind, bodies, features: [feature_a, feature_b], time: 0.0, measure: pair.squared_distance.sqrt() }
     }
 }
 
@@ -185,7 +187,7 @@ mod tests {
     use super::*;
 
     fn geometry(kind: Kind, time: f64, ends: [[[f64; 3]; 2]; 4]) -> ContactGeometry {
-        let named = Named { kind, bodies: [BodyId(0); 2], features: [0, 0], time };
+        let named = Named { kind, bodies: [BodyId(0); 2], features: [0, 0], time, measure: time };
         ContactGeometry::of(&named, [0, 1, 2, 3], &Corners::straight(&ends, time))
     }
 

@@ -172,7 +172,7 @@ const SHORTLY: f64 = 1.0 / 65536.0;
 
 /// Returns the first vertex of the body of each corner, and the four vertices by their numbers
 /// through all bodies. `None` if there are no such features.
-fn corners(layout: &Layout, named: &Named) -> Option<([u32; 4], [u32; 4])> {
+pub(super) fn corners(layout: &Layout, named: &Named) -> Option<([u32; 4], [u32; 4])> {
     let [a, b] = named.bodies.map(|body| layout.starts.get(body.index()).copied());
     let (a, b) = (a?, b?);
     let [p, q] = named.features;
@@ -191,7 +191,7 @@ fn corners(layout: &Layout, named: &Named) -> Option<([u32; 4], [u32; 4])> {
 }
 
 /// Error for contacts of other bodies.
-fn of_others() -> Error {
+pub(super) fn of_others() -> Error {
     Error::InvalidArgument {
         what: "contacts of other bodies, or of other positions, than the scene has now".into(),
         advice: "compute their geometry before bodies move, or are added, removed or replaced".into(),

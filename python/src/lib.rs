@@ -16,6 +16,7 @@ mod errors;
 mod exclusions;
 mod frame;
 mod geometry;
+mod grouped;
 mod host;
 mod key;
 mod matrix;

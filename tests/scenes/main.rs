@@ -5,6 +5,7 @@ mod crossing;
 mod exclusions;
 mod fans;
 mod geometry;
+mod grouped;
 mod instances;
 mod one_detector;
 mod rigid;

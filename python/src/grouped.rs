@@ -1,0 +1,60 @@
+//! Rows of an answer by features of a body.
+
+use crate::answer::Answer;
+use crate::detector::Detector;
+use crate::errors::choice;
+use crate::key::{Key, body_of};
+use nearmiss::contacts::GroupBy;
+use numpy::{IntoPyArray, PyArray1};
+use pyo3::prelude::*;
+
+/// Starts of each feature's rows, and the rows.
+type Grouped<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<u32>>);
+
+#[pymethods]
+impl Detector {
+    /// Group the rows of an answer by features of a body.
+    ///
+    /// - `answer`: Contacts, NearPairs or TrianglePairs of this detector.
+    /// - `body`: its number or name.
+    /// - `by`: "vertex" (of vertex/face rows), "edge" (both of edge/edge rows), "face" (of vertex/face
+    ///   rows, or both triangles), or "corner" (each vertex that takes part in a row).
+    ///
+    /// Returns two uint32 arrays, starts and rows: the rows of feature i are
+    /// rows[starts[i]:starts[i + 1]], ascending. Raises InvalidArgumentError for other answers.
+    #[pyo3(signature = (answer, body, by = "vertex"))]
+    fn grouped<'py>(
+        &self,
+        py: Python<'py>,
+        answer: &Answer,
+        #[pyo3(from_py_with = body_of)] body: Key,
+        by: &str,
+    ) -> PyResult<Grouped<'py>> {
+        let by = GroupBy::ALL.into_iter().find(|one| one.name() == by).ok_or_else(|| {
+            let names = GroupBy::ALL.map(|one| format!("{:?}", one.name())).join(", ");
+            choice(format!("by is unknown, got {by:?}"), format!("choose one of {names}"))
+        })?;
+        let body = self.body(py, body)?;
+        let found = self.work_of(py, answer, |detector, found| detector.grouped(found, body, by))?;
+        Ok((found.starts.into_pyarray(py), found.rows.into_pyarray(py)))
+    }
+
+    /// Return the least time of contact, or the least distance, of each vertex of a body.
+    ///
+    /// - `answer`: Contacts or NearPairs of this detector.
+    /// - `body`: its number or name.
+    ///
+    /// Returns a float64 array: over the rows in which the vertex takes part, inf without one.
+    /// Vertices that stop at different times leave the straight lines that were tested: query the
+    /// shortened step again.
+    fn least_by_vertex<'py>(
+        &self,
+        py: Python<'py>,
+        answer: &Answer,
+        #[pyo3(from_py_with = body_of)] body: Key,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let body = self.body(py, body)?;
+        let least = self.work_of(py, answer, |detector, found| detector.least_by_vertex(found, body))?;
+        Ok(least.into_pyarray(py))
+    }
+}
