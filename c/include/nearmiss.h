@@ -605,6 +605,9 @@ typedef struct {
     // Continuous, earliest. 1: take the start of the step to be free of crossing triangles. 0:
     // count them.
     uint32_t assume_free;
+    // Continuous, earliest. 1: features within `min_separation` at the start collide from when
+    // they come nearer than there. 0: they collide at the start.
+    uint32_t approaching;
     // Continuous, earliest. Most iterations of the solver for a pair, before the pair is left
     // undecided. 0: the default.
     uint32_t max_iterations;

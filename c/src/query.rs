@@ -62,6 +62,9 @@ pub struct NearmissQuery {
     /// Continuous, earliest. 1: take the start of the step to be free of crossing triangles. 0:
     /// count them.
     pub assume_free: u32,
+    /// Continuous, earliest. 1: features within `min_separation` at the start collide from when
+    /// they come nearer than there. 0: they collide at the start.
+    pub approaching: u32,
     /// Continuous, earliest. Most iterations of the solver for a pair, before the pair is left
     /// undecided. 0: the default.
     pub max_iterations: u32,
@@ -91,6 +94,7 @@ pub extern "C" fn nearmiss_query(kind: u32) -> NearmissQuery {
         adjacent: 0,
         only_crossing: 0,
         assume_free: 0,
+        approaching: 0,
         max_iterations: 0,
         rebuild: NearmissRebuild::NEARMISS_REBUILD_AUTO as u32,
         first: 0,
@@ -130,6 +134,7 @@ impl NearmissQuery {
         let adjacent = flag(self.adjacent, "adjacent")?;
         let only_crossing = flag(self.only_crossing, "only_crossing")?;
         let assume_free = flag(self.assume_free, "assume_free")?;
+        let approaching = flag(self.approaching, "approaching")?;
         self.check_idle(&query)?;
         if let (Query::Discrete(discrete), true) = (&mut query, adjacent) {
             *discrete = discrete.with_adjacent(adjacent);
@@ -147,6 +152,7 @@ impl NearmissQuery {
             certified.tolerance = (self.tolerance != -1.0).then_some(self.tolerance);
             certified.max_iterations = (self.max_iterations > 0).then_some(self.max_iterations);
             certified.min_separation = self.min_separation;
+            certified.approaching = approaching;
         }
         Ok(query.with_rebuild(self.rebuild()?))
     }
@@ -179,6 +185,7 @@ impl NearmissQuery {
             ("distance", self.distance != 0.0 && !is_near),
             ("tolerance", self.tolerance != -1.0 && !is_certified),
             ("min_separation", self.min_separation != 0.0 && !is_certified),
+            ("approaching", self.approaching != 0 && !is_certified),
             ("max_iterations", self.max_iterations != 0 && !is_certified),
         ];
         match idle.iter().find(|(_, is_idle)| *is_idle) {

@@ -48,6 +48,9 @@ pub struct Summary {
     pub largest_tolerance: Option<f64>,
     /// Minimum separation of a certified solver, in scene units; 0 for touching.
     pub min_separation: Option<f64>,
+    /// Whether features within that at the start are in contact only if they come nearer.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub approaching: Option<bool>,
     /// Largest distance of a near or a body-distances query, in scene units.
     pub distance: Option<f64>,
     /// Nearest triangles of a distance query, their distance and nearest points.

@@ -59,6 +59,7 @@ impl Detector {
                 .filter(|tolerances| tolerances.least < tolerances.largest)
                 .map(|tolerances| tolerances.largest),
             min_separation: query.certified().map(|certified| certified.params().min_separation),
+            approaching: query.certified().map(|certified| certified.approaching).filter(|is| *is),
             distance: match query {
                 Query::Near(near) => Some(near.distance),
                 Query::BodyDistances(distances) => Some(distances.within),

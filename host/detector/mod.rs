@@ -1,11 +1,13 @@
 //! A scene on a device, which answers queries step after step.
 
+mod approaching;
 mod caveats;
 mod edits;
 mod engine;
 mod figures;
 mod frame;
 mod geometry;
+mod grouped;
 mod instances;
 mod interrupted;
 mod layouts;
@@ -118,6 +120,7 @@ impl Detector {
         query.check()?;
         self.scene.may_exclude(query.kind())?;
         self.may_pair_bodies(&query)?;
+        self.may_approach(&query)?;
         let (query, radii) = self.thickened(query)?;
         let tolerances = match query.certified().map(|certified| certified.tolerance) {
             Some(Some(tolerance)) => Some(Arc::new(Tolerances::named(tolerance))),

@@ -73,6 +73,8 @@ pub trait Precision: Real + Send {
     type Ee64: Entry<Args = SolveArgs<Self>>;
     /// Counts listed pairs that are too large for the tolerance.
     type BelowPrecision: Entry<Args = BelowPrecisionArgs<Self>>;
+    /// Pairs that come nearer than at the start.
+    type Approach: Entry<Args = ThickRungArgs<Self>>;
     /// Isolation of roots in f32.
     type Isolate32: Entry<Args = RungArgs<Self>>;
     /// Isolation of roots in f64.
@@ -138,6 +140,7 @@ impl Precision for f32 {
     type Isolate64 = entry::narrow_isolate_f32_f64;
     type Settle = entry::narrow_settle_f32;
     type Slice = entry::narrow_slice_f32;
+    type Approach = entry::narrow_approach_f32;
     type Separate32 = entry::narrow_separate_f32_f32;
     type Separate64 = entry::narrow_separate_f32_f64;
     type SeparateThick = entry::narrow_separate_thick_f32;
@@ -199,6 +202,7 @@ impl Precision for f64 {
     type Isolate64 = entry::narrow_isolate_f64_f64;
     type Settle = entry::narrow_settle_f64;
     type Slice = entry::narrow_slice_f64;
+    type Approach = entry::narrow_approach_f64;
     type Separate32 = entry::narrow_separate_f64_f32;
     type Separate64 = entry::narrow_separate_f64_f64;
     type SeparateThick = entry::narrow_separate_thick_f64;

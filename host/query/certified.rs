@@ -32,6 +32,9 @@ pub struct Certified {
     /// Minimum separation: a length from 0, in scene units. Features this near are in contact, and
     /// a time is when they first are. 0 for touching.
     pub min_separation: f64,
+    /// Whether features within the separation at the start are in contact only from when they come
+    /// nearer than there.
+    pub approaching: bool,
 }
 
 /// Precision of a certified solver. None misses a contact. They differ in cost, and in the number
@@ -64,7 +67,13 @@ impl Certified {
 
     /// Returns the solver of a precision, with all other choices at their defaults.
     pub const fn by(precision: CertifiedPrecision) -> Certified {
-        Certified { precision, tolerance: None, max_iterations: None, min_separation: 0.0 }
+        Certified {
+            precision,
+            tolerance: None,
+            max_iterations: None,
+            min_separation: 0.0,
+            approaching: false,
+        }
     }
 
     /// Returns its name.

@@ -152,6 +152,19 @@ macro_rules! in_motion {
                 self.certainly(Certified { min_separation, ..self.solver.or_certified() })
             }
 
+            /// Sets whether features within the minimum separation at the start may stay so.
+            ///
+            /// They are in contact from the first time on at which they are nearer than at the
+            /// start, so a body at rest can leave. Features that touch at the start may part to
+            /// either side: use a minimum separation to keep a side. All other features are in
+            /// contact as ever. A query that can miss contacts becomes a certified one.
+            ///
+            /// A detector refuses it in a step in which a rigid body may turn.
+            #[must_use]
+            pub fn with_approaching(self, approaching: bool) -> $kind {
+                self.certainly(Certified { approaching, ..self.solver.or_certified() })
+            }
+
             /// Sets the most iterations of the solver for a pair, from 1. A pair that needs more is
             /// reported as undecided. A query that can miss contacts becomes a certified one.
             #[must_use]

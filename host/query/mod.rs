@@ -217,7 +217,8 @@ impl Query {
         }
         if let Some(certified) = shape.certified_mut() {
             let min_separation = if certified.is_apart() { 1.0 } else { 0.0 };
-            *certified = Certified { min_separation, ..Certified::by(certified.precision) };
+            let Certified { precision, approaching, .. } = *certified;
+            *certified = Certified { min_separation, approaching, ..Certified::by(precision) };
         }
         shape
     }

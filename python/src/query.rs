@@ -86,6 +86,7 @@ impl Query {
             set(&numbers, "tolerance", certified.tolerance)?;
             set(&numbers, "min_separation", min_separation)?;
             set(&numbers, "max_iterations", certified.max_iterations)?;
+            set(&numbers, "approaching", certified.approaching.then_some(true))?;
         }
         if !self.query.kind().is_at_rest() && !self.query.checks_start() {
             numbers.set_item("assume_free", true)?;
@@ -145,6 +146,7 @@ pub struct Accuracy {
     pub min_separation: f64,
     pub max_iterations: Option<u32>,
     pub assume_free: bool,
+    pub approaching: bool,
 }
 
 impl Accuracy {
@@ -171,6 +173,7 @@ impl Accuracy {
             tolerance: self.tolerance.map(|length| length + 0.0),
             min_separation: self.min_separation + 0.0,
             max_iterations: self.max_iterations,
+            approaching: self.approaching,
             ..Certified::default()
         })
     }
@@ -230,20 +233,23 @@ macro_rules! in_motion {
         /// - `max_iterations`: most iterations for a pair, at least 1. A pair that needs more is
         ///   reported as undecided. Default 4096.
         /// - `assume_free`: skip the count of triangle pairs that cross at the start of the step.
+        /// - `approaching`: features within `min_separation` at the start are in contact from when
+        ///   they come nearer than there, so they may rest, slide and part.
         #[pyclass(module = "nearmiss", frozen, extends = Query)]
         pub struct $kind;
 
         #[pymethods]
         impl $kind {
             #[new]
-            #[pyo3(signature = (*, tolerance = None, min_separation = 0.0, max_iterations = None, assume_free = false))]
+            #[pyo3(signature = (*, tolerance = None, min_separation = 0.0, max_iterations = None, assume_free = false, approaching = false))]
             fn new(
                 tolerance: Option<f64>,
                 min_separation: f64,
                 #[pyo3(from_py_with = iterations_of)] max_iterations: Option<u32>,
                 assume_free: bool,
+                approaching: bool,
             ) -> PyResult<PyClassInitializer<$kind>> {
-                let accuracy = Accuracy { tolerance, min_separation, max_iterations, assume_free };
+                let accuracy = Accuracy { tolerance, min_separation, max_iterations, assume_free, approaching };
                 Ok(PyClassInitializer::from(Query { query: accuracy.$of()? }).add_subclass($kind))
             }
         }

@@ -28,9 +28,12 @@ impl Detector {
     /// - `min_separation`: features that come this near count as contacts, a length of at least 0.
     /// - `max_iterations`: most iterations for a pair, at least 1. Default 4096.
     /// - `assume_free`: skip the count of triangle pairs that cross at the start of the step.
+    /// - `approaching`: features within `min_separation` at the start are in contact from when they
+    ///   come nearer than there.
     ///
     /// Raises InvalidArgumentError if the last update gave no body two ends.
-    #[pyo3(signature = (*, tolerance = None, min_separation = 0.0, max_iterations = None, assume_free = false))]
+    #[pyo3(signature = (*, tolerance = None, min_separation = 0.0, max_iterations = None, assume_free = false, approaching = false))]
+    #[allow(clippy::too_many_arguments, reason = "named arguments of Python")]
     fn continuous<'py>(
         &self,
         py: Python<'py>,
@@ -38,8 +41,9 @@ impl Detector {
         min_separation: f64,
         #[pyo3(from_py_with = iterations_of)] max_iterations: Option<u32>,
         assume_free: bool,
+        approaching: bool,
     ) -> Answered<'py> {
-        let accuracy = Accuracy { tolerance, min_separation, max_iterations, assume_free };
+        let accuracy = Accuracy { tolerance, min_separation, max_iterations, assume_free, approaching };
         self.answer_to(py, accuracy.continuous()?)
     }
 
@@ -49,9 +53,12 @@ impl Detector {
     /// - `min_separation`: features that come this near count as contacts, a length of at least 0.
     /// - `max_iterations`: most iterations for a pair, at least 1. Default 4096.
     /// - `assume_free`: skip the count of triangle pairs that cross at the start of the step.
+    /// - `approaching`: features within `min_separation` at the start are in contact from when they
+    ///   come nearer than there.
     ///
     /// Raises InvalidArgumentError if the last update gave no body two ends.
-    #[pyo3(signature = (*, tolerance = None, min_separation = 0.0, max_iterations = None, assume_free = false))]
+    #[pyo3(signature = (*, tolerance = None, min_separation = 0.0, max_iterations = None, assume_free = false, approaching = false))]
+    #[allow(clippy::too_many_arguments, reason = "named arguments of Python")]
     fn earliest<'py>(
         &self,
         py: Python<'py>,
@@ -59,8 +66,9 @@ impl Detector {
         min_separation: f64,
         #[pyo3(from_py_with = iterations_of)] max_iterations: Option<u32>,
         assume_free: bool,
+        approaching: bool,
     ) -> Answered<'py> {
-        let accuracy = Accuracy { tolerance, min_separation, max_iterations, assume_free };
+        let accuracy = Accuracy { tolerance, min_separation, max_iterations, assume_free, approaching };
         self.answer_to(py, accuracy.earliest()?)
     }
 

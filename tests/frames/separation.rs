@@ -1,6 +1,7 @@
 //! Features that come within a separation: whole frames against all pairs tested one by one, and
 //! pairs whose distance is known exactly.
 
+mod approaching;
 mod exact;
 mod thick;
 

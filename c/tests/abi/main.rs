@@ -1,6 +1,7 @@
 //! The functions as C calls them: answers are the library's, and bad arguments are refused.
 
 mod answers;
+mod approaching;
 mod bodies;
 mod exclusions;
 mod interrupted;

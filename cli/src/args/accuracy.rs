@@ -14,6 +14,12 @@ pub struct AccuracyArgs {
     /// Report features that come within this length [default: 0, touch]
     #[arg(long, value_name = "L", allow_hyphen_values = true)]
     pub min_separation: Option<f64>,
+    /// Let features that near at the start rest, slide and part
+    ///
+    /// Those within the minimum separation at the start are in contact from when they come nearer
+    /// than there, not at once.
+    #[arg(long, hide_short_help = true)]
+    pub approaching: bool,
     /// Limit the iterations for a pair of features [default: 4096]
     ///
     /// A pair that is not decided by then is reported as undecided.
@@ -27,6 +33,7 @@ impl AccuracyArgs {
         let all = [
             ("--tolerance", self.tolerance.is_some()),
             ("--min-separation", self.min_separation.is_some()),
+            ("--approaching", self.approaching),
             ("--max-iterations", self.max_iterations.is_some()),
         ];
         all.into_iter().find(|(_, given)| *given).map(|(option, _)| option)

@@ -84,7 +84,7 @@ fn one_output(json: bool, files: [&Option<PathBuf>; 2]) -> Result<(), Error> {
 }
 
 /// Options of continuous queries alone.
-const OF_STEPS: [&str; 3] = ["tolerance", "max_iterations", "min_separation"];
+const OF_STEPS: [&str; 4] = ["tolerance", "max_iterations", "min_separation", "approaching"];
 
 fn detect(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
     machine(&args.machine, given)?;

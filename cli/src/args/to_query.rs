@@ -154,6 +154,7 @@ impl DetectArgs {
                 tolerance: self.accuracy.tolerance,
                 max_iterations: self.accuracy.max_iterations,
                 min_separation: self.accuracy.min_separation.unwrap_or(0.0),
+                approaching: self.accuracy.approaching,
             }
             .into(),
             other => other,

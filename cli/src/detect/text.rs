@@ -112,7 +112,8 @@ fn table(summary: &Summary, contacts: &Contacts) -> Vec<(&'static str, String)> 
         let largest = summary.largest_tolerance.map_or(String::new(), |largest| format!(" to {largest:e}"));
         let apart = summary.min_separation.filter(|apart| *apart > 0.0);
         let apart = apart.map_or(String::new(), |apart| format!(", minimum separation {apart:e}"));
-        all.push(("accuracy", format!("tolerance {tolerance:e}{largest}{apart}")));
+        let approaching = summary.approaching.map_or("", |_| ", approaching alone");
+        all.push(("accuracy", format!("tolerance {tolerance:e}{largest}{apart}{approaching}")));
         let again = stats.escalated_vf_ee.iter().sum();
         let again = counted(again, "pair", "pairs");
         all.push(("retried", format!("{again} in f64")));

@@ -17,7 +17,7 @@ pub const STAGES: [(&str, &str); 9] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 99] = [
+const KERNELS: [(&str, &str); 100] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
     ("place_turns", "rotation vectors and paths of bodies that turn"),
     ("place", "poses applied, uploads put in place, other bodies at rest"),
@@ -92,6 +92,7 @@ const KERNELS: [(&str, &str); 99] = [
     ("narrow_isolate", "roots isolated, each with a certificate"),
     ("narrow_settle", "exact touching at the start"),
     ("narrow_slice", "the step in slices, and the search by boxes"),
+    ("narrow_approach", "pairs that come nearer than at the start"),
     ("narrow_separate_thick", "supporting planes, of radii that differ"),
     ("narrow_separate", "supporting planes"),
     ("narrow_divide", "candidates of bodies that turn, and the others"),

@@ -32,6 +32,8 @@ enum Rung {
     Separate64,
     /// Separation of features whose radii differ, in f64.
     SeparateThick,
+    /// Before all others: features that are near at the start, if they must come nearer.
+    Approach,
 }
 
 /// Returns the rungs of a solver.
@@ -49,7 +51,7 @@ fn rungs(certified: &Certified) -> &'static [Rung] {
 type OfKinds = [(&'static str, &'static str, Counter); 2];
 
 /// The lists that rungs leave.
-const LEFT: [OfKinds; 2] = [
+const LEFT: [OfKinds; 3] = [
     [
         ("narrow: vf for f64", "vertex/face pairs for f64", counter::VF_ESCALATED),
         ("narrow: ee for f64", "edge/edge pairs for f64", counter::EE_ESCALATED),
@@ -57,6 +59,10 @@ const LEFT: [OfKinds; 2] = [
     [
         ("narrow: vf for slices", "vertex/face pairs for slices", counter::VF_HARD),
         ("narrow: ee for slices", "edge/edge pairs for slices", counter::EE_HARD),
+    ],
+    [
+        ("narrow: vf that may approach", "vertex/face pairs that may approach", counter::VF_APPROACHING),
+        ("narrow: ee that may approach", "edge/edge pairs that may approach", counter::EE_APPROACHING),
     ],
 ];
 
@@ -72,6 +78,7 @@ impl Rung {
         match self {
             Rung::Isolate32 | Rung::Separate32 => 0,
             Rung::Isolate64 | Rung::Settle | Rung::Slice | Rung::Separate64 | Rung::SeparateThick => 1,
+            Rung::Approach => 2,
         }
     }
 }
@@ -88,6 +95,8 @@ enum Left {
 pub struct Rungs {
     certified: Certified,
     rungs: &'static [Rung],
+    /// Pairs that a query of what approaches leaves for the first rung.
+    approaching: Option<Left>,
     /// Pairs that each rung except the last leaves.
     left: Vec<Left>,
     /// Index into [`LEFT`] of each.
@@ -139,12 +148,16 @@ impl Rungs {
             }
         };
         let left = names.iter().map(|&at| of(at)).collect::<Result<_, Error>>()?;
+        let approaching = certified.is_some_and(|certified| certified.approaching);
+        let approaching = approaching
+            .then(|| lists(device, LEFT[Rung::Approach.left()], capacities.survivors).map(Left::Pairs))
+            .transpose()?;
         let asked = || lists(device, ASKED, capacities.asked).map(Left::Pairs);
         let asked = rungs.contains(&Rung::Isolate64).then(asked).transpose()?;
         let tolerances = device.of(purpose::TOLERANCES).buffer(0)?;
         let radii = device.of(purpose::RADII).buffer(0)?;
         let certified = certified.copied().unwrap_or_default();
-        Ok(Rungs { certified, rungs, left, names, asked, tolerances, radii, held: Vec::new() })
+        Ok(Rungs { certified, rungs, approaching, left, names, asked, tolerances, radii, held: Vec::new() })
     }
 
     /// Makes them the one rung of vertices whose thickness differs within a body: in f64, from the
@@ -190,7 +203,8 @@ impl Rungs {
 
     /// Returns the lists that the rungs fill.
     pub fn lists(&mut self) -> impl Iterator<Item = &mut dyn GrowableOutput> {
-        self.left.iter_mut().chain(&mut self.asked).flat_map(|left| -> [&mut dyn GrowableOutput; 2] {
+        let all = self.approaching.iter_mut().chain(&mut self.left).chain(&mut self.asked);
+        all.flat_map(|left| -> [&mut dyn GrowableOutput; 2] {
             match left {
                 Left::Pairs([vf, ee]) => [vf, ee],
                 Left::Begun([vf, ee]) => [vf, ee],
@@ -200,7 +214,9 @@ impl Rungs {
 
     /// Returns the lists, with names.
     pub fn between(&self) -> impl Iterator<Item = Named<'_>> {
-        self.names.iter().zip(&self.left).flat_map(|(&at, left)| {
+        let first = self.approaching.iter().map(|left| (Rung::Approach.left(), left));
+        let others = self.names.iter().copied().zip(&self.left);
+        first.chain(others).flat_map(|(at, left)| {
             let [vf_name, ee_name] = LEFT[at].map(|(name, ..)| name);
             match left {
                 Left::Pairs([vf, ee]) => [named(vf_name, vf), named(ee_name, ee)],
@@ -250,6 +266,7 @@ impl Rungs {
         let run = |rung, before: Option<&Left>, left| {
             let narrow = self.certified.precision == CertifiedPrecision::F32;
             let everything = narrow || rung == Rung::Isolate64;
+            let is_later = rung != Rung::Approach && self.rungs.first() != Some(&rung);
             let args = RungArgs {
                 frames: given.frames,
                 faces: given.faces,
@@ -265,13 +282,16 @@ impl Rungs {
                 flags: RungFlags::EVERYTHING.when(everything)
                     | RungFlags::DEFERS.when(asked.is_some())
                     | RungFlags::MARKS.when(sample && rung == Rung::Isolate32)
-                    | RungFlags::UNLESS_MARKED.when(sample && before.is_some()),
+                    | RungFlags::UNLESS_MARKED.when(sample && is_later),
                 pad: 0,
             };
             let capacity = before.map_or(first[0].capacity() + first[1].capacity(), Left::capacity);
             start::<R>(rung, given.device, capacity, (&args, self.radii.span()))
         };
-        let mut before = None;
+        let mut before = self.approaching.as_ref();
+        if before.is_some() {
+            run(Rung::Approach, None, before)?;
+        }
         for (at, &rung) in self.rungs.iter().enumerate() {
             if sample && !matches!(rung, Rung::Isolate32 | Rung::Isolate64) {
                 break;
@@ -307,6 +327,10 @@ fn start<R: Precision>(
         }
         Rung::Separate32 => launch::at_once::<R::Separate32>(device, capacity, args),
         Rung::Separate64 => launch::at_once::<R::Separate64>(device, capacity, args),
+        Rung::Approach => {
+            let args = ThickRungArgs { rung: *args, radii };
+            launch::striding::<R::Approach>(device, capacity, &args)
+        }
         Rung::SeparateThick => {
             let args = ThickRungArgs { rung: *args, radii };
             launch::at_once::<R::SeparateThick>(device, capacity, &args)

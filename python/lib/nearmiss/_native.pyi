@@ -396,6 +396,8 @@ class Continuous(Query["Contacts"]):
     - `max_iterations`: most iterations for a pair, at least 1. A pair that needs more is
       reported as undecided. Default 4096.
     - `assume_free`: skip the count of triangle pairs that cross at the start of the step.
+    - `approaching`: features within `min_separation` at the start are in contact from when
+      they come nearer than there, so they may rest, slide and part.
     """
 
     def __new__(
@@ -405,6 +407,7 @@ class Continuous(Query["Contacts"]):
         min_separation: float = 0.0,
         max_iterations: int | None = None,
         assume_free: bool = False,
+        approaching: bool = False,
     ) -> Continuous: ...
 
 class Earliest(Query["FirstContact"]):
@@ -420,6 +423,8 @@ class Earliest(Query["FirstContact"]):
     - `max_iterations`: most iterations for a pair, at least 1. A pair that needs more is
       reported as undecided. Default 4096.
     - `assume_free`: skip the count of triangle pairs that cross at the start of the step.
+    - `approaching`: features within `min_separation` at the start are in contact from when
+      they come nearer than there, so they may rest, slide and part.
     """
 
     def __new__(
@@ -429,6 +434,7 @@ class Earliest(Query["FirstContact"]):
         min_separation: float = 0.0,
         max_iterations: int | None = None,
         assume_free: bool = False,
+        approaching: bool = False,
     ) -> Earliest: ...
 
 class Near(Query["NearPairs"]):
@@ -1032,6 +1038,7 @@ class Detector:
         min_separation: float = 0.0,
         max_iterations: int | None = None,
         assume_free: bool = False,
+        approaching: bool = False,
     ) -> Contacts:
         """Return all contacts of the step: the answer to Continuous.
 
@@ -1039,6 +1046,8 @@ class Detector:
         - `min_separation`: features that come this near count as contacts, a length of at least 0.
         - `max_iterations`: most iterations for a pair, at least 1. Default 4096.
         - `assume_free`: skip the count of triangle pairs that cross at the start of the step.
+        - `approaching`: features within `min_separation` at the start are in contact from when they
+          come nearer than there.
 
         Raises InvalidArgumentError if the last update gave no body two ends.
         """
@@ -1050,6 +1059,7 @@ class Detector:
         min_separation: float = 0.0,
         max_iterations: int | None = None,
         assume_free: bool = False,
+        approaching: bool = False,
     ) -> FirstContact:
         """Return the first contact of the step: the answer to Earliest.
 
@@ -1057,6 +1067,8 @@ class Detector:
         - `min_separation`: features that come this near count as contacts, a length of at least 0.
         - `max_iterations`: most iterations for a pair, at least 1. Default 4096.
         - `assume_free`: skip the count of triangle pairs that cross at the start of the step.
+        - `approaching`: features within `min_separation` at the start are in contact from when they
+          come nearer than there.
 
         Raises InvalidArgumentError if the last update gave no body two ends.
         """
@@ -1095,6 +1107,31 @@ class Detector:
         Returns Geometry for Contacts and NearPairs: vertices, weights, points and normals. Returns
         PairGeometry for TrianglePairs: how they meet, and the segment in which they do.
         Raises InvalidArgumentError for other answers, and for those of the solver "moller".
+        """
+
+    def grouped(
+        self, answer: Answer, body: Key, by: str = "vertex"
+    ) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
+        """Group the rows of an answer by features of a body.
+
+        - `answer`: Contacts, NearPairs or TrianglePairs of this detector.
+        - `body`: its number or name.
+        - `by`: "vertex" (of vertex/face rows), "edge" (both of edge/edge rows), "face" (of vertex/face
+          rows, or both triangles), or "corner" (each vertex that takes part in a row).
+
+        Returns two uint32 arrays, starts and rows: the rows of feature i are
+        rows[starts[i]:starts[i + 1]], ascending. Raises InvalidArgumentError for other answers.
+        """
+
+    def least_by_vertex(self, answer: Answer, body: Key) -> NDArray[np.float64]:
+        """Return the least time of contact, or the least distance, of each vertex of a body.
+
+        - `answer`: Contacts or NearPairs of this detector.
+        - `body`: its number or name.
+
+        Returns a float64 array: over the rows in which the vertex takes part, inf without one.
+        Vertices that stop at different times leave the straight lines that were tested: query the
+        shortened step again.
         """
 
     def curves(self, answer: TrianglePairs) -> Curves:

@@ -22,7 +22,7 @@ use support::asked::by;
 use support::{ask, engine, judged, machines, ways};
 
 /// A pair of features: four points at both ends of the step.
-type Ends = [[[f64; 3]; 2]; 4];
+pub type Ends = [[[f64; 3]; 2]; 4];
 
 /// Times at which a pair is compared: dyadic, so exact.
 const TIMES: u32 = 64;
@@ -69,10 +69,10 @@ fn plus(a: [f64; 3], d: [f64; 3], by: f64) -> [f64; 3] {
     std::array::from_fn(|k| a[k] + by * d[k])
 }
 
-const FAMILIES: [&str; 8] =
+pub const FAMILIES: [&str; 8] =
     ["any", "passing", "parallel", "sliding", "turning", "degenerate", "far from the origin", "still"];
 
-fn family(r: &mut SmallRng, name: &str) -> Ends {
+pub fn family(r: &mut SmallRng, name: &str) -> Ends {
     let (start, way) = ([0; 4].map(|_| point(r)), point(r));
     let moved = |by: [f64; 4]| -> Ends { std::array::from_fn(|k| [start[k], plus(start[k], way, by[k])]) };
     match name {
@@ -169,7 +169,7 @@ fn the_judge_names_planted_faults_in_motion() {
 }
 
 /// As doubles that f32 does not hold.
-fn turned(body: &Body) -> Body {
+pub fn turned(body: &Body) -> Body {
     let turn = |[x, y, z]: [f64; 3]| [0.6 * x - 0.8 * y, 0.8 * x + 0.6 * y, z + x / 3.0];
     let frames = body.frames().into_iter().map(|mesh| {
         let points = mesh.positions().to_f64().into_iter().map(turn).collect();
@@ -179,7 +179,7 @@ fn turned(body: &Body) -> Body {
     Body::moving(t0, t1).expect("a step")
 }
 
-fn soup(n: usize, seed: u64) -> Body {
+pub fn soup(n: usize, seed: u64) -> Body {
     scene::soup(n, seed, true).expect("a scene")
 }
 
@@ -255,7 +255,7 @@ fn radii_that_differ_are_those_of_each_pair() {
 }
 
 /// The features of a contact, with their radii.
-fn of(bodies: &[Body], contact: &Contact) -> (Features, Ends, [f64; 4]) {
+pub fn of(bodies: &[Body], contact: &Contact) -> (Features, Ends, [f64; 4]) {
     use nearmiss::contacts::Kind;
     let [one, other] = contact.bodies.map(|body| &bodies[body.index()]);
     let edges = |body: &Body| {

@@ -121,6 +121,9 @@ fn accuracy(detector: &mut OneQuery, query: &Query) -> Vec<(&'static str, String
             "min separation",
             apart.map_or("0: touching".into(), |apart| format!("{apart:e}, as given")),
         ));
+        if certified.approaching {
+            all.push(("approaching", "near features at the start must come nearer".into()));
+        }
     }
     if let Query::Near(near) = query {
         all.push(("distance", format!("{:e}, as given", near.distance)));
