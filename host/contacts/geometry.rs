@@ -91,7 +91,13 @@ impl From<&Contact> for Named {
 impl From<&NearPair> for Named {
     fn from(pair: &NearPair) -> Named {
         let NearPair { kind, bodies, feature_a, feature_b, .. } = *pair;
-        Named { kind, bodies, features: [feature_a, feature_b], time: 0.0, measure: pair.squared_distance.sqrt() }
+        Named {
+            kind,
+            bodies,
+            features: [feature_a, feature_b],
+            time: 0.0,
+            measure: pair.squared_distance.sqrt(),
+        }
     }
 }
 

@@ -97,7 +97,10 @@ mod tests {
         let of = |row: u32| [[2, 0], [0, 1], [2, 1]][row as usize];
         let grouped = Grouped::new(4, 0..3, of);
         assert_eq!((grouped.starts.as_slice(), grouped.len()), ([0, 2, 4, 6, 6].as_slice(), 4));
-        assert_eq!([0, 1, 2, 3].map(|i| grouped.of(i).to_vec()), [vec![0, 1], vec![1, 2], vec![0, 2], vec![]]);
+        assert_eq!(
+            [0, 1, 2, 3].map(|i| grouped.of(i).to_vec()),
+            [vec![0, 1], vec![1, 2], vec![0, 2], vec![]]
+        );
         assert!(Grouped::new(0, 0..0, |_| []).is_empty());
     }
 }

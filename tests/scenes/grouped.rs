@@ -31,8 +31,12 @@ macro_rules! features {
                 (0..4).map(|k| (GroupBy::Corner, at.owner[k], at.vertices[k])).collect();
             let [a, b] = row.bodies;
             match row.kind {
-                Kind::Vf => all.extend([(GroupBy::Vertex, a, row.feature_a), (GroupBy::Face, b, row.feature_b)]),
-                Kind::Ee => all.extend([(GroupBy::Edge, a, row.feature_a), (GroupBy::Edge, b, row.feature_b)]),
+                Kind::Vf => {
+                    all.extend([(GroupBy::Vertex, a, row.feature_a), (GroupBy::Face, b, row.feature_b)])
+                }
+                Kind::Ee => {
+                    all.extend([(GroupBy::Edge, a, row.feature_a), (GroupBy::Edge, b, row.feature_b)])
+                }
             }
             all
         })

@@ -57,7 +57,8 @@ fn fault(features: Features, ends: Ends, p: &Params, found: &Course) -> Option<S
         let now = squared(features, ends, t);
         if is_within { now < start } else { now.is_within(p.min_separation) }
     };
-    let before = |from: f64| (0..=TIMES).map(|k| f64::from(k) / f64::from(TIMES)).find(|&t| t < from && met(t));
+    let before =
+        |from: f64| (0..=TIMES).map(|k| f64::from(k) / f64::from(TIMES)).find(|&t| t < from && met(t));
     match found {
         Course::Never => before(2.0).map(|t| format!("missed at {t}")),
         Course::Known(verdict) if verdict.is_contact() && !met(verdict.toi_upper) => {
@@ -183,7 +184,8 @@ fn the_judge_names_planted_faults() {
     let face = [[-1.0, -1.0, 0.0], [2.0, -1.0, 0.0], [-1.0, 2.0, 0.0]].map(|at| [at; 2]);
     let pair = |last: f64| -> Ends { [[[0.0, 0.0, 0.25], [0.0, 0.0, last]], face[0], face[1], face[2]] };
     let p = Params { min_separation: 0.5, ..Params::new(1e-6) };
-    let of = |last: f64, found: Course| fault(Features::VertexFace, pair(last), &p, &found).unwrap_or_default();
+    let of =
+        |last: f64, found: Course| fault(Features::VertexFace, pair(last), &p, &found).unwrap_or_default();
     assert!(of(0.125, Course::Never).contains("missed"));
     assert!(of(0.125, Course::Known(Verdict::undecided(0.5, 1.0, 0, false))).contains("late"));
     assert!(of(0.5, Course::Known(Verdict::contact(0.1, 0.2, 0, false))).contains("no contact at 0.2"));

@@ -19,7 +19,7 @@ pub trait Ring: Sized {
 
 /// Control vectors, component by component.
 pub trait Vectors {
-    /// Of what they consist.
+    /// Their components.
     type Number: Ring;
     /// A component of `x[k]`, at the start or at the end.
     fn component(&self, at: Place, axis: u32) -> Self::Number;
@@ -127,7 +127,9 @@ impl Form {
             Form::Along { side, at } => along(x, side, at),
             Form::Side { side, to } => above_side(x, side, |i| less(x, to, side[0], i)),
             Form::SideHeight { side } => above_side(x, side, |i| x.component(start(side[0]), i)),
-            Form::SideSquare { side: [a, b] } => dot(|i| less(x, start(b), a, i), |i| less(x, start(b), a, i)),
+            Form::SideSquare { side: [a, b] } => {
+                dot(|i| less(x, start(b), a, i), |i| less(x, start(b), a, i))
+            }
             Form::SideRate { side } => {
                 let [a, b] = side;
                 let rate = |k: u32| above_side(x, side, |i| less(x, end(k), a, i));

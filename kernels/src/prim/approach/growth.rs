@@ -22,16 +22,15 @@ impl<R: Real> Motion<'_, R> {
     pub(super) fn beyond_until(&self, nearest: Nearest) -> f64 {
         let (mut until, mut k) = (1.0, 0);
         while k < self.corners() {
-            let (first, last) =
-                (self.bounded(nearest.above(start(k))), self.bounded(nearest.above(end(k))));
-            if !(last.least() >= 0.0) {
+            let (first, last) = (self.bounded(nearest.above(start(k))), self.bounded(nearest.above(end(k))));
+            if last.least() < 0.0 {
                 let least = Real::max(first.least(), 0.0);
                 until = Real::min(until, least / (least - last.least()) * f64::INCLUSION_DOWN);
             }
             k += 1;
         }
-        // All of the hull is in its own plane; and of numbers that are none nothing is known.
-        if matches!(nearest, Nearest::Inside(_)) || !(until > 0.0) { 0.0 } else { until }
+        // All of the hull is in its own plane.
+        if matches!(nearest, Nearest::Inside(_)) { 0.0 } else { until }
     }
 
     /// The time at which the bound of the distance is largest: see the module. Not after it.

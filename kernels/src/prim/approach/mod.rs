@@ -36,7 +36,7 @@ use crate::prim::inclusion::{Params, Verdict};
 use forms::{Form, Place, end, start};
 use numbers::{Bounded, Rounded, Vertices, exact_sign};
 
-/// What becomes of a pair.
+/// The course of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Course {
     /// The solver finds when it first comes within the separation.
@@ -56,7 +56,7 @@ enum Nearest {
     Inside(i32),
 }
 
-/// What is known of the distance.
+/// When the distance may fall below that at the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fall {
     Never,
@@ -81,7 +81,7 @@ struct Bounds {
 }
 
 impl<R: Real> Motion<'_, R> {
-    /// What becomes of the pair. `radii` are those of control vectors, in the unit of the scene; the
+    /// The course of the pair. `radii` are those of control vectors, in the unit of the scene; the
     /// largest is part of the separation if all are the same.
     #[inline(always)]
     pub fn course(&self, radii: [f64; 4], p: &Params) -> Course {
@@ -97,16 +97,15 @@ impl<R: Real> Motion<'_, R> {
         if distance.least > beyond || (!is_even && distance.most > within) {
             return Course::Solver;
         }
-        let undecided = |from: f64| Course::Known(Verdict::undecided(from.min(p.end), p.end, 0, false));
         match self.fall(distance) {
             Fall::Never => Course::Never,
             Fall::AtOnce => Course::Solver,
             Fall::NotBefore(from) if from >= p.end => Course::Never,
-            Fall::NotBefore(from) if !(from > 0.0) => undecided(0.0),
-            Fall::NotBefore(from) => {
+            Fall::NotBefore(from) if from > 0.0 => {
                 let verdict = self.advance(from, distance, within, p);
                 if verdict.is_separated() { Course::Never } else { Course::Known(verdict) }
             }
+            Fall::NotBefore(_) => Course::Known(Verdict::undecided(0.0, p.end, 0, false)),
         }
     }
 

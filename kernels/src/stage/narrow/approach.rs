@@ -67,12 +67,7 @@ fn of_query<R: Real>(args: &ThickRungArgs<R>, of_bodies: Params) -> Params {
 }
 
 #[inline(always)]
-fn course<R: Real>(
-    vertices: [Moving<R>; 4],
-    vectors: &Edges<f64>,
-    radii: [f64; 4],
-    p: &Params,
-) -> Course {
+fn course<R: Real>(vertices: [Moving<R>; 4], vectors: &Edges<f64>, radii: [f64; 4], p: &Params) -> Course {
     let vertices = vertices.map(|vertex| [vertex.t0, vertex.t1]);
     Motion { vertices: &vertices, pair: vectors }.course(radii, p)
 }
