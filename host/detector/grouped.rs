@@ -194,7 +194,7 @@ fn of_triangles(
     let own = pair.bodies.into_iter().zip(pair.triangles).filter(|&(of, _)| of == body);
     let mut all: Vec<u32> = match by {
         GroupBy::Corner => own.flat_map(|(_, face)| corners(face)).collect(),
-        _ => own.map(|(_, face)| face).collect(),
+        GroupBy::Vertex | GroupBy::Edge | GroupBy::Face => own.map(|(_, face)| face).collect(),
     };
     all.sort_unstable();
     all.dedup();

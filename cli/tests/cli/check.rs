@@ -21,11 +21,14 @@ pub fn counts(told: &Value) -> Vec<(&str, u64)> {
     all.filter_map(|(key, of)| count(of).map(|count| (key.as_str(), count))).collect()
 }
 
+/// A mesh, its text, and the counts of its faults.
+type Case<'a> = (&'a str, &'a str, &'a [(&'a str, u64)]);
+
 #[test]
 fn planted_faults_are_found_and_nothing_else() {
     let folder = Folder::new("check-planted");
     // Each fault with the faces that have it, behind the two good ones.
-    let cases: [(&str, &str, &[(&str, u64)]); 9] = [
+    let cases: [Case; 9] = [
         ("none", "", &[("boundary_edges", 4)]),
         (
             "crossing",
