@@ -1116,8 +1116,8 @@ class Detector:
 
         - `answer`: Contacts, NearPairs or TrianglePairs of this detector.
         - `body`: its number or name.
-        - `by`: "vertex" (of vertex/face rows), "edge" (both of edge/edge rows), "face" (of vertex/face
-          rows, or both triangles), or "corner" (each vertex that takes part in a row).
+        - `by`: "vertex" and "face" of vertex/face rows, "edge" of edge/edge rows. "face" is also each
+          triangle of a pair. "corner" is each vertex that takes part in a row.
 
         Returns two uint32 arrays, starts and rows: the rows of feature i are
         rows[starts[i]:starts[i + 1]], ascending. Raises InvalidArgumentError for other answers.
