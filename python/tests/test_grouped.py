@@ -51,7 +51,7 @@ def test_what_has_no_such_rows_is_refused(detector):
     pairs = detector.near(1.0)
     with pytest.raises(nm.InvalidArgumentError, match='by is unknown, got "side"; choose one of "vertex"'):
         detector.grouped(pairs, 0, "side")
-    with pytest.raises(nm.InvalidArgumentError, match="no body"):
+    with pytest.raises(nm.InvalidArgumentError, match="body 7 is not in the scene"):
         detector.grouped(pairs, 7)
     with pytest.raises(nm.InvalidArgumentError, match="cannot be grouped by vertex"):
         detector.grouped(detector.discrete(), 0, "vertex")
