@@ -12,9 +12,10 @@
 
 use super::forms::{Form, end, start};
 use super::numbers::Bounded;
-use super::{Bounds, Motion, Nearest, largest_component};
+use super::{Bounds, Motion, Nearest};
 use crate::math::tolerance::{Tolerance, U64};
 use crate::math::{Real, Vec3};
+use crate::prim::isolate::pair::most;
 
 impl<R: Real> Motion<'_, R> {
     /// The time until which all control vectors are beyond the plane at the start. Not after it.
@@ -47,8 +48,8 @@ impl<R: Real> Motion<'_, R> {
             }
             Nearest::Inside(of_hull) => {
                 let rate = if of_hull < 0 { Bounded { value: -rate.value, ..rate } } else { rate };
-                let most = area.most();
-                distance.least * rate.least() / (most * Real::sqrt(most))
+                let area = area.most();
+                distance.least * rate.least() / (area * Real::sqrt(area))
             }
         };
         let speed = self.speed() + self.strain(area.least()) * distance.most;
@@ -59,19 +60,14 @@ impl<R: Real> Motion<'_, R> {
     /// The largest velocity of a control vector; not below it.
     #[inline(always)]
     fn speed(&self) -> f64 {
-        let mut most = 0.0;
-        for [start, end] in self.pair.w {
-            most = Real::max(most, self.longest(end - start));
-        }
-        most
+        self.pair.w.iter().map(|[start, end]| self.longest(*end - *start)).fold(0.0, Real::max)
     }
 
     /// The length of a difference of differences; not below it.
     #[inline(always)]
     fn longest(&self, v: Vec3<f64>) -> f64 {
         let [a, b] = self.pair.edges;
-        let reach = Real::max(self.pair.reach, Real::max(largest_component(a[0]), largest_component(a[1])));
-        let reach = Real::max(reach, Real::max(largest_component(b[0]), largest_component(b[1])));
+        let reach = [a[0], a[1], b[0], b[1]].into_iter().map(most).fold(self.pair.reach, Real::max);
         (Real::sqrt(v.dot(v)) + 8.0 * U64 * reach + f64::ISOLATE_UNDERFLOW) * f64::INCLUSION_UP
     }
 

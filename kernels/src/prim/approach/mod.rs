@@ -28,10 +28,12 @@ mod growth;
 pub mod numbers;
 
 use super::isolate::Pair;
-use super::isolate::advance::{Advance, Advanced, Distance};
-use super::near::{Radii, shortest};
+use super::isolate::advance::{Advance, Distance};
+use super::isolate::ladder::advanced;
+use super::isolate::pair::most;
+use super::isolate::thick::{is_even, radii_of_nearest, shortest_of};
+use crate::math::Real;
 use crate::math::tolerance::{DISTANCE_CERTAIN, DISTANCE_ERROR, Tolerance};
-use crate::math::{Real, Vec3};
 use crate::prim::inclusion::{Params, Verdict};
 use forms::{Form, Place, end, start};
 use numbers::{Bounded, Rounded, Vertices, exact_sign};
@@ -88,13 +90,13 @@ impl<R: Real> Motion<'_, R> {
         if !self.pair.finite {
             return Course::Solver;
         }
+        let radii = radii.map(|radius| self.pair.scaled(radius));
         let (distance, radius) = self.distance(radii);
         let separation = self.pair.scaled(p.min_separation);
         let within = (separation + radius) * f64::INCLUSION_DOWN;
-        let beyond = (separation + self.pair.scaled(largest(radii))) * f64::INCLUSION_UP;
-        let is_even = is_even(radii);
-        // Of several radii a smaller one may be reached at a distance that never falls.
-        if distance.least > beyond || (!is_even && distance.most > within) {
+        let beyond = (separation + largest(radii)) * f64::INCLUSION_UP;
+        // If radii differ, features can come within a larger one while their distance stays.
+        if distance.least > beyond || (!is_even(radii) && distance.most > within) {
             return Course::Solver;
         }
         match self.fall(distance) {
@@ -109,24 +111,23 @@ impl<R: Real> Motion<'_, R> {
         }
     }
 
-    /// Bounds of the distance at the start, and the least radius of points that may be nearest.
+    /// Bounds of the distance at the start, and the least radius of points that may be nearest. Radii
+    /// are in the units of control vectors.
     #[inline(always)]
     fn distance(&self, radii: [f64; 4]) -> (Bounds, f64) {
-        let (w, [a, b]) = (self.pair.w[0][0], self.pair.edges);
-        let of = if self.pair.is_face { [w * -1.0, a[0], b[0]] } else { [w, a[0], b[0] * -1.0] };
-        let reach = of.into_iter().map(largest_component).fold(0.0, Real::max);
-        let [x, y, z, _] = radii.map(|radius| self.pair.scaled(radius));
-        let (distance, radius) = if self.pair.is_face {
-            let distance = shortest::<true>(of);
-            (distance, Radii::along(x, [y - x, z - x]).of_nearest::<true>(of, reach, distance))
+        let (w, [a, b], is_face) = (self.pair.w[0][0], self.pair.edges, self.pair.is_face);
+        let of = if is_face { [w * -1.0, a[0], b[0]] } else { [w, a[0], b[0] * -1.0] };
+        let reach = most(of[0]).greater(most(of[1])).greater(most(of[2]));
+        let distance = shortest_of(of, is_face);
+        let radius = if is_even(radii) {
+            radii[0]
         } else {
-            let distance = shortest::<false>(of);
-            (distance, Radii::along(x, [z - x, y - x]).of_nearest::<false>(of, reach, distance))
+            radii_of_nearest(of, is_face, radii, (reach, distance)).least
         };
         let error = |part: f64| part * reach + f64::ISOLATE_UNDERFLOW;
         let (least, most) = (distance - error(DISTANCE_ERROR), distance + error(DISTANCE_CERTAIN));
         let least = Real::max(least * f64::INCLUSION_DOWN, 0.0);
-        (Bounds { least, most: most * f64::INCLUSION_UP }, if is_even(radii) { x } else { radius.least })
+        (Bounds { least, most: most * f64::INCLUSION_UP }, radius)
     }
 
     /// When the distance may first fall below that at the start. Out of line: few pairs come here.
@@ -149,7 +150,7 @@ impl<R: Real> Motion<'_, R> {
         while k < self.corners() {
             let height = self.height(nearest, end(k))?;
             stays &= height >= 0;
-            // Of the corners whose mixture the nearest point is.
+            // Only corners that the nearest point is a mixture of.
             comes &= height < 0 || !nearest.has(k);
             k += 1;
         }
@@ -241,14 +242,14 @@ impl<R: Real> Motion<'_, R> {
     #[inline(always)]
     fn height(&self, nearest: Nearest, to: Place) -> Option<i32> {
         let sign = self.sign(nearest.above(to))?;
-        Some(if let Nearest::Inside(of_hull) = nearest { of_hull * sign } else { sign })
+        Some(nearest.away(sign))
     }
 
     /// The sign of `p . v`.
     #[inline(always)]
     fn rate(&self, nearest: Nearest) -> Option<i32> {
         let sign = self.sign(nearest.rate())?;
-        Some(if let Nearest::Inside(of_hull) = nearest { of_hull * sign } else { sign })
+        Some(nearest.away(sign))
     }
 
     /// Whether the features touch at the start.
@@ -295,13 +296,8 @@ impl<R: Real> Motion<'_, R> {
             time_tolerance: pair.time_tolerance(slack),
         };
         let mut advance = Advance::new(*pair, (from, pair.end), distance, p.max_iterations);
-        let undecided = |from: f64, ended| Verdict::undecided(from.min(p.end), p.end, 0, ended);
-        match advance.run() {
-            Advanced::Apart => Verdict::separated(p.end, 0),
-            Advanced::Within { from, to } if to <= p.end => Verdict::contact(from, to, 0, false),
-            Advanced::Within { from, .. } | Advanced::Near { from } => undecided(from, false),
-            Advanced::Open { from } => undecided(from, advance.steps() >= p.max_iterations),
-        }
+        let told = advance.run();
+        advanced(told, advance.steps() >= p.max_iterations, p)
     }
 }
 
@@ -314,6 +310,12 @@ impl Nearest {
             Nearest::Side([a, b]) => k == a || k == b,
             Nearest::Inside(_) => true,
         }
+    }
+
+    /// The sign of a form of heights, away from the origin: that of the hull's plane is on either side.
+    #[inline(always)]
+    fn away(self, sign: i32) -> i32 {
+        if let Nearest::Inside(of_hull) = self { of_hull * sign } else { sign }
     }
 
     /// The height above the plane.
@@ -349,18 +351,7 @@ fn side(at: u32, is_face: bool) -> [u32; 2] {
     }
 }
 
-/// The largest magnitude of a component.
-#[inline(always)]
-fn largest_component(v: Vec3<f64>) -> f64 {
-    Real::max(Real::max(Real::abs(v[0]), Real::abs(v[1])), Real::abs(v[2]))
-}
-
 #[inline(always)]
 fn largest([a, b, c, d]: [f64; 4]) -> f64 {
     Real::max(Real::max(a, b), Real::max(c, d))
-}
-
-#[inline(always)]
-fn is_even([a, b, c, d]: [f64; 4]) -> bool {
-    (a == b) & (b == c) & (c == d)
 }

@@ -148,6 +148,18 @@ pub(super) fn met<S: Real>(from: S, to: S, p: &Params) -> Option<Verdict> {
     (to.wide() <= p.end).then(|| Verdict::contact(from.wide(), to.wide(), 0, false))
 }
 
+/// The verdict of an advancement behind which no rung comes. `ended` is whether its steps are used up.
+#[inline(always)]
+pub fn advanced(told: Advanced<f64>, ended: bool, p: &Params) -> Verdict {
+    let undecided = |from: f64, ended| Verdict::undecided(from.min(p.end), p.end, 0, ended);
+    match told {
+        Advanced::Apart => Verdict::separated(p.end, 0),
+        Advanced::Within { from, to } => met(from, to, p).unwrap_or(undecided(from, false)),
+        Advanced::Near { from } => undecided(from, false),
+        Advanced::Open { from } => undecided(from, ended),
+    }
+}
+
 /// Whether a vertex touches a face at the start. Exact.
 #[inline]
 pub fn vf_touch<R: Real>(v: Moving<R>, f: [Moving<R>; 3]) -> bool {

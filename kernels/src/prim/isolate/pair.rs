@@ -200,7 +200,7 @@ impl<S: Real> Window<S> {
 
 /// The largest magnitude of a vector's components.
 #[inline(always)]
-pub(super) fn most<S: Real>(v: Vec3<S>) -> S {
+pub fn most<S: Real>(v: Vec3<S>) -> S {
     let v = v.map(S::abs);
     v[0].greater(v[1]).greater(v[2])
 }

@@ -22,13 +22,13 @@
 
 use super::advance::Advanced;
 use super::hull::Hull;
-use super::ladder::met;
+use super::ladder::advanced;
 use super::pair::{Pair, sum};
 use super::separation::ADVANCES;
 use crate::math::tolerance::{DISTANCE_ERROR, Tolerance};
 use crate::math::{Real, Vec3};
 use crate::prim::inclusion::{Grid, Params, Verdict};
-use crate::prim::near::{Radii, shortest};
+use crate::prim::near::{Radii, Range, shortest};
 
 /// Control vectors err by `4u` of the reach, their differences by `9u`: nine times as much as those of
 /// positions, from which the bounds of distances are derived; and they are up to twice as long. Ratio,
@@ -40,6 +40,33 @@ const PATIENCE: u32 = 16;
 const TURNS: u32 = 3;
 /// How often the time that is tested ahead doubles: from a tolerance up to the end of the step.
 const AHEAD: u32 = 40;
+
+/// Whether all control vectors have one radius.
+#[inline(always)]
+pub fn is_even([a, b, c, d]: [f64; 4]) -> bool {
+    (a == b) & (b == c) & (c == d)
+}
+
+/// The distance of a vertex and a face, or of two edges, by their differences.
+#[inline(always)]
+pub fn shortest_of(of: [Vec3<f64>; 3], is_face: bool) -> f64 {
+    if is_face { shortest::<true>(of) } else { shortest::<false>(of) }
+}
+
+/// The radii of their nearest points, by those of control vectors. The distance is as computed.
+#[inline(always)]
+pub fn radii_of_nearest(
+    of: [Vec3<f64>; 3],
+    is_face: bool,
+    [x, y, z, _]: [f64; 4],
+    (reach, distance): (f64, f64),
+) -> Range {
+    if is_face {
+        Radii::along(x, [y - x, z - x]).of_nearest::<true>(of, reach, distance)
+    } else {
+        Radii::along(x, [z - x, y - x]).of_nearest::<false>(of, reach, distance)
+    }
+}
 
 /// A pair under way.
 #[derive(Clone, Copy, Debug)]
@@ -88,13 +115,8 @@ impl Uneven {
     /// A step; once it was the last, the verdict.
     #[inline(always)]
     pub fn step(&mut self, p: &Params) -> Option<Verdict> {
-        let undecided = |from: f64, ended| Verdict::undecided(from.min(p.end), p.end, 0, ended);
-        Some(match self.advance()? {
-            Advanced::Apart => Verdict::separated(p.end, 0),
-            Advanced::Within { from, to } => met(from, to, p).unwrap_or(undecided(from, false)),
-            Advanced::Near { from } => undecided(from, false),
-            Advanced::Open { from } => undecided(from, self.steps >= self.most),
-        })
+        let told = self.advance()?;
+        Some(advanced(told, self.steps >= self.most, p))
     }
 
     /// A step; the result, once it is final.
@@ -195,17 +217,11 @@ impl Uneven {
     /// Whether nearest points at a time are certainly within the separation and their radii.
     #[inline(always)]
     fn is_within(&self, t: f64) -> bool {
-        let ([a, b, c, _], [x, y, z, _]) = (self.vectors(t), self.radii);
+        let [a, b, c, _] = self.vectors(t);
         let reach = RESTS * self.hull.reach;
-        let (distance, radii) = if self.hull.is_face {
-            let of = [a * -1.0, a - b, a - c];
-            let distance = shortest::<true>(of);
-            (distance, Radii::along(x, [y - x, z - x]).of_nearest::<true>(of, reach, distance))
-        } else {
-            let of = [a, c - a, b - a];
-            let distance = shortest::<false>(of);
-            (distance, Radii::along(x, [z - x, y - x]).of_nearest::<false>(of, reach, distance))
-        };
+        let of = if self.hull.is_face { [a * -1.0, a - b, a - c] } else { [a, c - a, b - a] };
+        let distance = shortest_of(of, self.hull.is_face);
+        let radii = radii_of_nearest(of, self.hull.is_face, self.radii, (reach, distance));
         let most = (distance + DISTANCE_ERROR * reach + f64::ISOLATE_UNDERFLOW) * f64::INCLUSION_UP;
         most <= (self.separation + radii.least) * f64::INCLUSION_DOWN
     }

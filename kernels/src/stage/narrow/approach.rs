@@ -16,7 +16,7 @@
 //!          beyond the separation; 500 to 2,000 for others; some microseconds if signs need integers.
 
 use super::climb::emit;
-use super::{edge_edge, of_edge_edge, of_vertex_face, vertex_face};
+use super::{edge_edge, of_edge_edge, of_vertex_face, radii_of_edges, radii_of_face, vertex_face};
 use crate::abi::{Listed, Pair, RungArgs, ThickRungArgs};
 use crate::exec::entries::append_each;
 use crate::exec::{Block, Lane};
@@ -34,10 +34,8 @@ pub fn approach<R: Real, B: Block>(block: &mut B, args: &ThickRungArgs<R>) {
         let pair = rung.vf.pairs.get(lane, i);
         let p = of_query(args, of_vertex_face(lane, rung, pair));
         let (v, [x, y, z]) = vertex_face(lane, &rung.frames, rung.faces, pair);
-        let [a, b, c] = lane.read(rung.faces, pair.b).map(|vertex| radius(lane, args, vertex));
-        let own = radius(lane, args, pair.a);
+        let radii = differ(args).then(|| radii_of_face(lane, args.radii, rung.faces, pair));
         let vectors = Face::new(v, [x, y, z], &p).of_four();
-        let radii = [own + a, own + b, own + c, own + c];
         left(lane, rung, (&rung.vf, pair), course([v, x, y, z], &vectors, radii, &p))
     });
     let count = rung.ee.pairs.listed(block);
@@ -45,31 +43,34 @@ pub fn approach<R: Real, B: Block>(block: &mut B, args: &ThickRungArgs<R>) {
         let pair = rung.ee.pairs.get(lane, i);
         let p = of_query(args, of_edge_edge(lane, rung, pair));
         let [x, y] = edge_edge(lane, &rung.frames, rung.edges, pair);
-        let ends = |edge| lane.read(rung.edges, edge).map(|vertex| radius(lane, args, vertex));
-        let ([a, b], [c, d]) = (ends(pair.a), ends(pair.b));
-        let radii = [a + c, a + d, b + c, b + d];
+        let radii = differ(args).then(|| radii_of_edges(lane, args.radii, rung.edges, pair));
         let vectors = Edges::new(x, y, &p);
         left(lane, rung, (&rung.ee, pair), course([x[0], x[1], y[0], y[1]], &vectors, radii, &p))
     });
 }
 
-/// The radius of a vertex, if it is no part of the separation.
+/// Whether radii differ between vertices. Else they are part of the separation.
 #[inline(always)]
-fn radius<R: Real, L: Lane>(lane: &L, args: &ThickRungArgs<R>, vertex: u32) -> f64 {
-    if args.radii.is_empty() { 0.0 } else { lane.read(args.radii, vertex) }
+fn differ<R: Real>(args: &ThickRungArgs<R>) -> bool {
+    !args.radii.is_empty()
 }
 
 /// Parameters of a pair. With radii of vertices the separation is that of the query.
 #[inline(always)]
 fn of_query<R: Real>(args: &ThickRungArgs<R>, of_bodies: Params) -> Params {
-    let Params { min_separation, .. } = if args.radii.is_empty() { of_bodies } else { args.rung.params };
+    let Params { min_separation, .. } = if differ(args) { args.rung.params } else { of_bodies };
     Params { min_separation, ..of_bodies }
 }
 
 #[inline(always)]
-fn course<R: Real>(vertices: [Moving<R>; 4], vectors: &Edges<f64>, radii: [f64; 4], p: &Params) -> Course {
+fn course<R: Real>(
+    vertices: [Moving<R>; 4],
+    vectors: &Edges<f64>,
+    radii: Option<[f64; 4]>,
+    p: &Params,
+) -> Course {
     let vertices = vertices.map(|vertex| [vertex.t0, vertex.t1]);
-    Motion { vertices: &vertices, pair: vectors }.course(radii, p)
+    Motion { vertices: &vertices, pair: vectors }.course(radii.unwrap_or_default(), p)
 }
 
 /// A pair for the solver; lists one that is known.

@@ -95,6 +95,22 @@ fn edge_edge<R: Real, L: Lane>(
     [edge(lane, frames, lane.read(edges, pair.a)), edge(lane, frames, lane.read(edges, pair.b))]
 }
 
+/// Radii of the control vectors of a vertex and a face: the vertex and each corner, the last twice.
+#[inline(always)]
+fn radii_of_face<L: Lane>(lane: &L, radii: Span<f64>, faces: Span<[u32; 3]>, pair: Pair) -> [f64; 4] {
+    let own = lane.read(radii, pair.a);
+    let [x, y, z] = lane.read(faces, pair.b).map(|vertex| own + lane.read(radii, vertex));
+    [x, y, z, z]
+}
+
+/// Radii of the control vectors of two edges.
+#[inline(always)]
+fn radii_of_edges<L: Lane>(lane: &L, radii: Span<f64>, edges: Span<[u32; 2]>, pair: Pair) -> [f64; 4] {
+    let ends = |edge| lane.read(edges, edge).map(|vertex| lane.read(radii, vertex));
+    let ([a, b], [c, d]) = (ends(pair.a), ends(pair.b));
+    [a + c, a + d, b + c, b + d]
+}
+
 /// Parameters of a vertex and a face, with those of their two bodies.
 #[inline(always)]
 fn of_vertex_face<R: Real, L: Lane>(lane: &L, args: &RungArgs<R>, pair: Pair) -> Params {

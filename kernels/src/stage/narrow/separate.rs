@@ -17,14 +17,14 @@
 //!          operations a step, mostly one or two steps behind f32, two to fifteen without it.
 
 use super::climb::emit;
-use super::{edge_edge, of_edge_edge, of_vertex_face, vertex_face};
+use super::{edge_edge, of_edge_edge, of_vertex_face, radii_of_edges, radii_of_face, vertex_face};
 use crate::abi::{Listed, Pair, RungArgs, ThickRungArgs};
 use crate::exec::{Block, Lane};
 use crate::math::Real;
 use crate::prim::inclusion::{Params, Verdict};
 use crate::prim::isolate::normal::{NUMBERS, Normal};
 use crate::prim::isolate::separation::Double;
-use crate::prim::isolate::thick::Uneven;
+use crate::prim::isolate::thick::{Uneven, is_even};
 use crate::prim::isolate::{Edges, Face};
 
 /// Bytes of shared memory of a block: a normal a lane, and the numbers of pairs drawn.
@@ -128,9 +128,7 @@ impl<R: Real, L: Lane> UnderWay<R, L> for Thick {
         (pair, from): (Pair, f64),
         put: impl FnOnce(Normal<f64>),
     ) -> Self {
-        let radius = |vertex| lane.read(args.radii, vertex);
-        let (own, [x, y, z]) = (radius(pair.a), lane.read(args.rung.faces, pair.b).map(radius));
-        let radii = [own + x, own + y, own + z, own + z];
+        let radii = radii_of_face(lane, args.radii, args.rung.faces, pair);
         let p = of_radii(of_vertex_face(lane, &args.rung, pair), &args.rung.params, radii);
         let (v, f) = vertex_face(lane, &args.rung.frames, args.rung.faces, pair);
         let face = Face::new(v, f, &p);
@@ -144,10 +142,7 @@ impl<R: Real, L: Lane> UnderWay<R, L> for Thick {
         (pair, from): (Pair, f64),
         put: impl FnOnce(Normal<f64>),
     ) -> Self {
-        let radius = |vertex| lane.read(args.radii, vertex);
-        let ends = |edge| lane.read(args.rung.edges, edge).map(radius);
-        let ([a, b], [c, d]) = (ends(pair.a), ends(pair.b));
-        let radii = [a + c, a + d, b + c, b + d];
+        let radii = radii_of_edges(lane, args.radii, args.rung.edges, pair);
         let p = of_radii(of_edge_edge(lane, &args.rung, pair), &args.rung.params, radii);
         let [x, y] = edge_edge(lane, &args.rung.frames, args.rung.edges, pair);
         let edges = Edges::new(x, y, &p);
@@ -168,12 +163,6 @@ impl<R: Real, L: Lane> UnderWay<R, L> for Thick {
             Thick::Uneven(uneven) => uneven.step(p),
         }
     }
-}
-
-/// Whether all control vectors have one radius.
-#[inline(always)]
-fn is_even([a, b, c, d]: [f64; 4]) -> bool {
-    (a == b) & (b == c) & (c == d)
 }
 
 /// Parameters of a pair whose separation is that of the query, and the radius if there is one.
