@@ -37,14 +37,16 @@ enum Rung {
 }
 
 /// Returns the rungs of a solver.
-fn rungs(certified: &Certified) -> &'static [Rung] {
-    match (certified.precision, certified.is_apart()) {
+fn rungs(certified: &Certified) -> Vec<Rung> {
+    let of_solver: &[Rung] = match (certified.precision, certified.is_apart()) {
         (CertifiedPrecision::F64, true) => &[Rung::Separate64],
         (CertifiedPrecision::Mixed | CertifiedPrecision::F32, true) => &[Rung::Separate32, Rung::Separate64],
         (CertifiedPrecision::F32, false) => &[Rung::Isolate32, Rung::Settle],
         (CertifiedPrecision::F64, false) => &[Rung::Isolate64, Rung::Slice],
         (CertifiedPrecision::Mixed, false) => &[Rung::Isolate32, Rung::Isolate64, Rung::Slice],
-    }
+    };
+    let first = certified.approaching.then_some(Rung::Approach);
+    first.into_iter().chain(of_solver.iter().copied()).collect()
 }
 
 /// Lists of both kinds: a name for comparisons of machines, a name for errors, and the counter.
@@ -94,9 +96,7 @@ enum Left {
 /// The rungs of a certified solver, and the lists between them; empty for another solver.
 pub struct Rungs {
     certified: Certified,
-    rungs: &'static [Rung],
-    /// Pairs that a query of what approaches leaves for the first rung.
-    approaching: Option<Left>,
+    rungs: Vec<Rung>,
     /// Pairs that each rung except the last leaves.
     left: Vec<Left>,
     /// Index into [`LEFT`] of each.
@@ -137,38 +137,40 @@ impl Rungs {
         certified: Option<&Certified>,
         capacities: &Capacities,
     ) -> Result<Self, Error> {
-        let rungs = certified.map_or(&[][..], rungs);
-        let names: Vec<_> = rungs.iter().rev().skip(1).rev().map(|rung| rung.left()).collect();
+        let rungs = certified.map_or(Vec::new(), rungs);
+        let leaving = rungs.split_last().map_or(&[][..], |(_, before)| before);
+        let names: Vec<_> = leaving.iter().map(|rung| rung.left()).collect();
         let is_apart = certified.is_some_and(Certified::is_apart);
-        let of = |at: usize| {
-            if is_apart {
-                lists(device, LEFT[at], capacities.left).map(Left::Begun)
+        let of = |rung: &Rung| {
+            if *rung == Rung::Approach {
+                lists(device, LEFT[rung.left()], capacities.survivors).map(Left::Pairs)
+            } else if is_apart {
+                lists(device, LEFT[rung.left()], capacities.left).map(Left::Begun)
             } else {
-                lists(device, LEFT[at], capacities.left).map(Left::Pairs)
+                lists(device, LEFT[rung.left()], capacities.left).map(Left::Pairs)
             }
         };
-        let left = names.iter().map(|&at| of(at)).collect::<Result<_, Error>>()?;
-        let approaching = certified.is_some_and(|certified| certified.approaching);
-        let approaching = approaching
-            .then(|| lists(device, LEFT[Rung::Approach.left()], capacities.survivors).map(Left::Pairs))
-            .transpose()?;
+        let left = leaving.iter().map(of).collect::<Result<_, Error>>()?;
         let asked = || lists(device, ASKED, capacities.asked).map(Left::Pairs);
         let asked = rungs.contains(&Rung::Isolate64).then(asked).transpose()?;
         let tolerances = device.of(purpose::TOLERANCES).buffer(0)?;
         let radii = device.of(purpose::RADII).buffer(0)?;
         let certified = certified.copied().unwrap_or_default();
-        Ok(Rungs { certified, rungs, approaching, left, names, asked, tolerances, radii, held: Vec::new() })
+        Ok(Rungs { certified, rungs, left, names, asked, tolerances, radii, held: Vec::new() })
     }
 
-    /// Makes them the one rung of vertices whose thickness differs within a body: in f64, from the
-    /// first list to the last.
+    /// Makes them the one rung of vertices whose thickness differs within a body: in f64, to the last
+    /// list. What approaches is still tested before it.
     ///
     /// # Errors
     /// Device errors.
     pub fn thicken(&mut self, device: &Device, radii: &[f64]) -> Result<(), Error> {
         self.radii = device.of(purpose::RADII).upload(radii)?;
-        self.rungs = &[Rung::SeparateThick];
-        (self.left, self.names, self.asked) = (Vec::new(), Vec::new(), None);
+        self.rungs.retain(|rung| *rung == Rung::Approach);
+        self.left.truncate(self.rungs.len());
+        self.names.truncate(self.rungs.len());
+        self.rungs.push(Rung::SeparateThick);
+        self.asked = None;
         Ok(())
     }
 
@@ -203,8 +205,7 @@ impl Rungs {
 
     /// Returns the lists that the rungs fill.
     pub fn lists(&mut self) -> impl Iterator<Item = &mut dyn GrowableOutput> {
-        let all = self.approaching.iter_mut().chain(&mut self.left).chain(&mut self.asked);
-        all.flat_map(|left| -> [&mut dyn GrowableOutput; 2] {
+        self.left.iter_mut().chain(&mut self.asked).flat_map(|left| -> [&mut dyn GrowableOutput; 2] {
             match left {
                 Left::Pairs([vf, ee]) => [vf, ee],
                 Left::Begun([vf, ee]) => [vf, ee],
@@ -214,9 +215,7 @@ impl Rungs {
 
     /// Returns the lists, with names.
     pub fn between(&self) -> impl Iterator<Item = Named<'_>> {
-        let first = self.approaching.iter().map(|left| (Rung::Approach.left(), left));
-        let others = self.names.iter().copied().zip(&self.left);
-        first.chain(others).flat_map(|(at, left)| {
+        self.names.iter().zip(&self.left).flat_map(|(&at, left)| {
             let [vf_name, ee_name] = LEFT[at].map(|(name, ..)| name);
             match left {
                 Left::Pairs([vf, ee]) => [named(vf_name, vf), named(ee_name, ee)],
@@ -266,7 +265,6 @@ impl Rungs {
         let run = |rung, before: Option<&Left>, left| {
             let narrow = self.certified.precision == CertifiedPrecision::F32;
             let everything = narrow || rung == Rung::Isolate64;
-            let is_later = rung != Rung::Approach && self.rungs.first() != Some(&rung);
             let args = RungArgs {
                 frames: given.frames,
                 faces: given.faces,
@@ -282,18 +280,15 @@ impl Rungs {
                 flags: RungFlags::EVERYTHING.when(everything)
                     | RungFlags::DEFERS.when(asked.is_some())
                     | RungFlags::MARKS.when(sample && rung == Rung::Isolate32)
-                    | RungFlags::UNLESS_MARKED.when(sample && is_later),
+                    | RungFlags::UNLESS_MARKED.when(sample && before.is_some()),
                 pad: 0,
             };
             let capacity = before.map_or(first[0].capacity() + first[1].capacity(), Left::capacity);
             start::<R>(rung, given.device, capacity, (&args, self.radii.span()))
         };
-        let mut before = self.approaching.as_ref();
-        if before.is_some() {
-            run(Rung::Approach, None, before)?;
-        }
+        let mut before = None;
         for (at, &rung) in self.rungs.iter().enumerate() {
-            if sample && !matches!(rung, Rung::Isolate32 | Rung::Isolate64) {
+            if sample && !matches!(rung, Rung::Approach | Rung::Isolate32 | Rung::Isolate64) {
                 break;
             }
             let left = self.left.get(at);
