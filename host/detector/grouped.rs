@@ -53,7 +53,9 @@ impl Detector {
             Inputs::Triangles(pairs) => (pairs.len(), 6),
         };
         memory::require("rows by feature", 4 * (2 * features + most * rows) as u64)?;
-        let rows = 0..u32::try_from(rows).map_err(|_| too_many(rows))?;
+        // All entries have a number, not only the rows.
+        u32::try_from(most * rows).map_err(|_| too_many(rows))?;
+        let rows = 0..rows as u32;
         match inputs {
             Inputs::Features(named) => {
                 check(&layout, &named, counts)?;
@@ -76,7 +78,7 @@ impl Detector {
                     let corners = layout.faces[(first.triangle + face) as usize];
                     corners.map(|vertex| vertex - first.vertex)
                 };
-                let of = |row: u32| of_triangles(&pairs[row as usize], body, by, corners_of);
+                let of = |row: u32| own(of_triangles(&pairs[row as usize], body, by, corners_of), body);
                 Ok(Grouped::new(features, rows, of))
             }
         }
@@ -160,15 +162,15 @@ fn check(layout: &Layout, named: &[Named], counts: Counts) -> Result<(), Error> 
 }
 
 /// Features of a row, with their bodies; `None` in place of others.
-type Features = [Option<(BodyId, u32)>; 4];
+type Features<const N: usize> = [Option<(BodyId, u32)>; N];
 
 /// Those of a body, each once.
-fn own(features: Features, body: BodyId) -> impl Iterator<Item = u32> {
+fn own<const N: usize>(features: Features<N>, body: BodyId) -> impl Iterator<Item = u32> {
     let own = features.map(|feature| feature.filter(|&(of, _)| of == body).map(|(_, own)| own));
-    (0..4).filter(move |&k| !own[..k].contains(&own[k])).filter_map(move |k| own[k])
+    (0..N).filter(move |&k| !own[..k].contains(&own[k])).filter_map(move |k| own[k])
 }
 
-fn of_named(layout: &Layout, row: &Named, by: GroupBy) -> Features {
+fn of_named(layout: &Layout, row: &Named, by: GroupBy) -> Features<4> {
     let (bodies, features) = (row.bodies, row.features);
     let side = |k: usize| Some((bodies[k], features[k]));
     match (by, row.kind) {
@@ -184,26 +186,25 @@ fn of_named(layout: &Layout, row: &Named, by: GroupBy) -> Features {
     }
 }
 
-/// Triangles of a row that are of a body, or their corners, each once.
+/// Triangles of a row, or the corners of those of a body.
 fn of_triangles(
     pair: &TrianglePair,
     body: BodyId,
     by: GroupBy,
     corners: impl Fn(u32) -> [u32; 3],
-) -> Vec<u32> {
-    let own = pair.bodies.into_iter().zip(pair.triangles).filter(|&(of, _)| of == body);
-    let mut all: Vec<u32> = match by {
-        GroupBy::Corner => own.flat_map(|(_, face)| corners(face)).collect(),
-        GroupBy::Vertex | GroupBy::Edge | GroupBy::Face => own.map(|(_, face)| face).collect(),
-    };
-    all.sort_unstable();
-    all.dedup();
-    all
+) -> Features<6> {
+    let side = |k: usize| (pair.bodies[k], pair.triangles[k]);
+    if by != GroupBy::Corner {
+        return [Some(side(0)), Some(side(1)), None, None, None, None];
+    }
+    // Only faces of the body are known to be there.
+    let [a, b] = [0, 1].map(|k| Some(side(k)).filter(|&(of, _)| of == body).map(|(_, face)| corners(face)));
+    std::array::from_fn(|k| Some((body, if k < 3 { a?[k] } else { b?[k - 3] })))
 }
 
 fn too_many(rows: usize) -> Error {
     Error::InvalidArgument {
-        what: format!("an answer of {rows} rows is too long: 32 bits number the rows of a group"),
+        what: format!("answer is too long to be grouped by 32 bits, got {rows} rows"),
         advice: "use a smaller distance or separation".into(),
     }
 }
