@@ -43,11 +43,11 @@ impl Walk<'_> {
     }
 
     fn answer(&mut self, step: usize) -> Result<Contacts, Error> {
-        let anew = self.rebuild_every.is_some_and(|every| (step as u64).is_multiple_of(every.into()));
+        let is_rebuilt = self.rebuild_every.is_some_and(|every| (step as u64).is_multiple_of(every.into()));
         let inputs = self.all.inputs(self.detector.scene(), step, self.at_rest);
         match step {
             0 => self.detector.detect(),
-            _ if anew => {
+            _ if is_rebuilt => {
                 self.detector.update(&inputs)?;
                 self.detector.rebuild()?;
                 self.detector.detect()
