@@ -36,6 +36,22 @@ pub fn soup(n: usize, seed: u64, moving: bool) -> Body {
     if moving { Body::moving(frame(t0), frame(t1)).expect("a body") } else { Body::deformable(frame(t0)) }
 }
 
+/// The soup, of which every second triangle is an edge of no face and a point.
+pub fn loose(n: usize, seed: u64, moving: bool) -> Body {
+    let cut = |mesh: Mesh| {
+        let (name, positions, all) = mesh.into_parts();
+        let of = |odd: usize| all.iter().skip(odd).step_by(2);
+        let (edges, points) = of(1).map(|&[a, b, c]| ([a, b], c)).unzip();
+        let mesh = Mesh::new(name, positions, of(0).copied().collect()).expect("a mesh");
+        mesh.with_edges(edges).and_then(|mesh| mesh.with_points(points)).expect("valid")
+    };
+    let mut ends = soup(n, seed, moving).frames().into_iter().map(cut);
+    match (ends.next(), ends.next()) {
+        (Some(t0), Some(t1)) => Body::moving(t0, t1).expect("a body"),
+        (t0, _) => Body::deformable(t0.expect("a frame")),
+    }
+}
+
 /// A sheet with waves of `n` by `n` squares, of two triangles each, that sinks.
 pub fn sheet(n: u32) -> Body {
     let at = |sunk: f32| -> Vec<[f32; 3]> {

@@ -47,7 +47,7 @@ pub struct NearmissBody {
     pub positions: NearmissRows,
     /// Three indices of vertices a triangle, without gaps.
     pub triangles: *const u32,
-    /// Number of triangles, at least 1.
+    /// Number of triangles. A body needs a triangle, an edge or a point.
     pub triangle_count: usize,
     /// A `NearmissBodyKind`.
     pub kind: u32,
@@ -70,6 +70,15 @@ pub struct NearmissBody {
     pub radii: *const f64,
     /// How many radii there are: 0 for none, 1 for all vertices, or one for each.
     pub radius_count: usize,
+    /// Two indices of vertices an edge, without gaps. Edges of no triangle take part by themselves.
+    /// They also number the edges of answers: those of triangles that are not listed come behind.
+    pub edges: *const u32,
+    /// Number of edges.
+    pub edge_count: usize,
+    /// Vertices of no triangle and no edge that take part by themselves.
+    pub points: *const u32,
+    /// Number of points.
+    pub point_count: usize,
 }
 
 /// A deformable body without a mesh, in environment 0, that collides with all others and itself.
@@ -95,6 +104,10 @@ pub extern "C" fn nearmiss_body() -> NearmissBody {
         pose: UNMOVED,
         radii: null(),
         radius_count: 0,
+        edges: null(),
+        edge_count: 0,
+        points: null(),
+        point_count: 0,
     }
 }
 
@@ -123,14 +136,17 @@ impl NearmissBody {
     /// # Safety
     /// Its pointers point to what the header says.
     pub(crate) unsafe fn body(&self) -> Result<Body, Error> {
-        // SAFETY: the caller's promise, of all four.
-        let (name, points, corners, radii) = unsafe {
+        // SAFETY: the caller's promise, of all six.
+        let (name, positions, corners, radii, edges, points) = unsafe {
             let name = text(self.name).unwrap_or_else(|| "a body".to_owned());
             let count = self.triangle_count.saturating_mul(3);
-            let points = self.positions.points(&format!("positions of {name}"))?;
+            let positions = self.positions.points(&format!("positions of {name}"))?;
             let corners = items(self.triangles, count, &format!("triangles of {name}"))?;
             let radii = items(self.radii, self.radius_count, &format!("radii of {name}"))?;
-            (name, points, corners, radii)
+            let ends = self.edge_count.saturating_mul(2);
+            let edges = items(self.edges, ends, &format!("edges of {name}"))?;
+            let points = items(self.points, self.point_count, &format!("points of {name}"))?;
+            (name, positions, corners, radii, edges, points)
         };
         let make = match self.kind {
             0 => Body::fixed,
@@ -143,8 +159,8 @@ impl NearmissBody {
                 ));
             }
         };
-        if self.triangle_count == 0 {
-            return Err(Error::Input { file: name, problem: Problem::NoTriangles });
+        if self.triangle_count == 0 && self.edge_count == 0 && self.point_count == 0 {
+            return Err(Error::Input { file: name, problem: Problem::NoElements });
         }
         let is_rigid = self.kind == NearmissBodyKind::NEARMISS_BODY_RIGID as u32;
         if !is_rigid && self.pose != UNMOVED {
@@ -154,9 +170,11 @@ impl NearmissBody {
             ));
         }
         let filter = self.filter(&name)?;
-        nearmiss::memory::require("triangles", size_of_val(corners) as u64)?;
-        let faces = corners.as_chunks::<3>().0.to_vec();
-        let body = make(Mesh::new(name, points.positions()?, faces)?).with_filter(filter);
+        let bytes = size_of_val(corners) + size_of_val(edges) + size_of_val(points);
+        nearmiss::memory::require("triangles, edges and points", bytes as u64)?;
+        let mesh = Mesh::new(name, positions.positions()?, corners.as_chunks::<3>().0.to_vec())?;
+        let mesh = mesh.with_edges(edges.as_chunks::<2>().0.to_vec())?.with_points(points.to_vec())?;
+        let body = make(mesh).with_filter(filter);
         let body = body.with_thickness(thickness(radii)?);
         body.validate()?;
         if is_rigid { body.at(Pose::from(self.pose)) } else { Ok(body) }

@@ -11,8 +11,13 @@ use nearmiss::scene::BodyId;
 pub enum NearmissKind {
     /// Feature a is a vertex, feature b a face.
     NEARMISS_VF = 0,
-    /// Both features are edges, numbered in ascending order of (larger vertex, smaller vertex).
+    /// Both features are edges, numbered in ascending order of (larger vertex, smaller vertex), or as
+    /// given.
     NEARMISS_EE = 1,
+    /// Feature a is an edge of no triangle, feature b a vertex of no triangle.
+    NEARMISS_EV = 2,
+    /// Both features are points: vertices of no triangle and no edge.
+    NEARMISS_VV = 3,
 }
 
 /// Certainty of a contact.
@@ -48,15 +53,15 @@ pub enum NearmissClosest {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct NearmissContact {
-    /// Vertex and face, or two edges.
+    /// The kind of both features.
     pub kind: NearmissKind,
     /// Certainty.
     pub status: NearmissStatus,
     /// The bodies of feature a and of feature b.
     pub bodies: [u32; 2],
-    /// Index of the vertex, or of the first edge, in its body.
+    /// Index of the first feature of the kind in its body.
     pub feature_a: u32,
-    /// Index of the face, or of the second edge, in its body.
+    /// Index of the second feature in its body.
     pub feature_b: u32,
     /// Time of contact, in [0, 1] of the step. Certified: never later than the first contact.
     pub toi: f64,
@@ -78,15 +83,15 @@ pub struct NearmissTrianglePair {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct NearmissNearPair {
-    /// Vertex and face, or two edges.
+    /// The kind of both features.
     pub kind: NearmissKind,
     /// The nearest parts of the two.
     pub closest: NearmissClosest,
     /// The bodies of feature a and of feature b.
     pub bodies: [u32; 2],
-    /// Index of the vertex, or of the first edge, in its body.
+    /// Index of the first feature of the kind in its body.
     pub feature_a: u32,
-    /// Index of the face, or of the second edge, in its body.
+    /// Index of the second feature in its body.
     pub feature_b: u32,
     /// Squared distance. Its root errs by at most 192 half ulps of the extent of the features. A
     /// square below 2^-1022 has fewer digits; one below 2^-1075 is 0, though the features may be
@@ -133,6 +138,8 @@ impl From<Kind> for NearmissKind {
         match kind {
             Kind::Vf => NearmissKind::NEARMISS_VF,
             Kind::Ee => NearmissKind::NEARMISS_EE,
+            Kind::Ev => NearmissKind::NEARMISS_EV,
+            Kind::Vv => NearmissKind::NEARMISS_VV,
         }
     }
 }

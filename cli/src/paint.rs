@@ -72,7 +72,7 @@ pub fn check(path: &Path) -> Result<(), Error> {
 pub fn starts(bodies: &[Body]) -> Vec<(u32, usize)> {
     let next = |next: &mut (usize, usize), body: &Body| {
         let own = *next;
-        *next = (own.0 + body.vertex_count(), own.1 + body.face_count());
+        *next = (own.0 + body.vertex_count(), own.1 + body.element_count());
         Some((own.0 as u32, own.1))
     };
     bodies.iter().scan((0, 0), next).collect()
@@ -98,7 +98,7 @@ pub fn merged(bodies: &[Body], time: f64) -> Result<Mesh, Error> {
     let (mut points, mut faces) = (Vec::new(), Vec::new());
     for (body, (first, _)) in bodies.iter().zip(starts(bodies)) {
         points.extend(placed(body, time));
-        faces.extend(body.faces().iter().map(|face| face.map(|vertex| vertex + first)));
+        faces.extend(body.elements().iter().map(|face| face.map(|vertex| vertex + first)));
     }
     let is_single = |body: &Body| body.kind() != BodyKind::Rigid && !body.positions_t0().is_f64();
     let single = time == 0.0 && bodies.iter().all(is_single);
@@ -134,7 +134,7 @@ pub fn paint(
         Rows::BodyDistances(all) => all.iter().for_each(|n| pair(n.bodies, n.triangles)),
         Rows::BodyPairs(all) => {
             for body in all.iter().flat_map(|pair| pair.bodies).map(|body| body.index()) {
-                let (first, count) = (starts[body].1, bodies[body].face_count());
+                let (first, count) = (starts[body].1, bodies[body].element_count());
                 counts[first..first + count].iter_mut().for_each(|count| *count += 1);
             }
         }

@@ -37,7 +37,7 @@ impl FileFaces {
     /// The faces of these bodies.
     pub fn of(bodies: &[Body], polygons: &[Polygons]) -> FileFaces {
         let all = |(body, polygons): (&Body, &Polygons)| {
-            (0..body.face_count() as u32).map(|i| polygons.file_face(i)).collect()
+            (0..body.element_count() as u32).map(|i| polygons.file_face(i)).collect()
         };
         FileFaces(bodies.iter().zip(polygons).map(all).collect())
     }
@@ -64,7 +64,7 @@ impl FileFaces {
             Rows::Contacts(all) => {
                 let faces = |c: &Contact| match c.kind {
                     Kind::Vf => Contact { feature_b: self.face(c.bodies[1], c.feature_b), ..*c },
-                    Kind::Ee => *c,
+                    Kind::Ee | Kind::Ev | Kind::Vv => *c,
                 };
                 let mut all: Vec<_> = all.iter().map(faces).collect();
                 let key = |c: &Contact| (c.kind, (c.bodies[0], c.feature_a), (c.bodies[1], c.feature_b));

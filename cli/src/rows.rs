@@ -15,7 +15,7 @@
 
 use crate::sequence::Moment;
 use nearmiss::contacts::{
-    Contact, ContactGeometry, Geometry, Kind, NearPair, NearestTriangles, PairGeometry, PairKind, Part, Rows,
+    Contact, ContactGeometry, Geometry, NearPair, NearestTriangles, PairGeometry, PairKind, Part, Rows,
     Status, TrianglePair,
 };
 use nearmiss::scene::BodyId;
@@ -187,13 +187,6 @@ fn place(g: &ContactGeometry) -> impl Iterator<Item = String> + use<> {
     owners.into_iter().chain(g.vertices.map(|vertex| vertex.to_string())).chain(numbers)
 }
 
-fn kind(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Vf => "vf",
-        Kind::Ee => "ee",
-    }
-}
-
 fn status(status: Status) -> &'static str {
     match status {
         Status::Unverified => "unverified",
@@ -203,7 +196,7 @@ fn status(status: Status) -> &'static str {
 }
 
 fn near(pair: &NearPair, weighted: bool) -> Vec<String> {
-    let own = [kind(pair.kind).into(), pair.feature_a.to_string(), pair.feature_b.to_string()];
+    let own = [pair.kind.name().into(), pair.feature_a.to_string(), pair.feature_b.to_string()];
     let weights = weighted.then(|| pair.weights().map(|weight| weight.to_string()));
     let weights = weights.into_iter().flatten();
     let distance = [pair.squared_distance.to_string()];
@@ -218,7 +211,7 @@ fn nearest(n: &NearestTriangles) -> [String; 9] {
 
 fn contact(c: &Contact) -> [String; 6] {
     let [a, b] = [c.feature_a, c.feature_b].map(|i| i.to_string());
-    [kind(c.kind).into(), a, b, c.toi.to_string(), c.toi_upper.to_string(), status(c.status).into()]
+    [c.kind.name().into(), a, b, c.toi.to_string(), c.toi_upper.to_string(), status(c.status).into()]
 }
 
 /// The names of bodies that have none in a file: their numbers, if there are several.
@@ -321,7 +314,7 @@ impl Serialize for JsonRows<'_> {
             }
             Rows::Contacts(all) => to.collect_seq(all.iter().enumerate().map(|(at, c)| {
                 let row = Meeting {
-                    kind: kind(c.kind),
+                    kind: c.kind.name(),
                     feature_a: c.feature_a,
                     feature_b: c.feature_b,
                     toi: c.toi,
@@ -338,7 +331,7 @@ impl Serialize for JsonRows<'_> {
             }
             Rows::Near(near) => to.collect_seq(near.iter().enumerate().map(|(at, pair)| {
                 let row = Nearness {
-                    kind: kind(pair.kind),
+                    kind: pair.kind.name(),
                     feature_a: pair.feature_a,
                     feature_b: pair.feature_b,
                     squared_distance: pair.squared_distance,

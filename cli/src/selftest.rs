@@ -228,6 +228,7 @@ impl Bench {
         let [draped, soup] = [("draped", args.triangles, 1), ("soup", args.triangles / 10, 2)]
             .map(|(name, triangles, seed)| scene::scene(name, triangles, seed));
         self.compare("draped with soup", &[draped?, soup?])?;
+        self.compare("threads and points", &[scene::threads(args.triangles / 2, 1)?])?;
         if !args.mesh.is_empty() {
             self.compare(&args.mesh[0].display().to_string(), &[body(&args.mesh)?])?;
         }
@@ -330,9 +331,14 @@ impl Bench {
     /// Small scenes on the emulated GPU, in three orders.
     fn under_the_microscope(&mut self) -> Result<(), Error> {
         let Bench { machine, faults, .. } = self;
-        for name in scene::FORMULAS {
+        let scenes = scene::FORMULAS.map(|name| {
             let triangles = if name == "identical" { EQUAL } else { SMALL };
-            let bodies = [scene::scene(name, triangles, 3)?];
+            (name, scene::scene(name, triangles, 3))
+        });
+        let scenes = scenes.into_iter().chain([("threads and points", scene::threads(SMALL, 3))]);
+        let count = scene::FORMULAS.len() + 1;
+        for (name, body) in scenes {
+            let bodies = [body?];
             for (asked, query) in questions(&bodies) {
                 // The default of the machine, on both.
                 let query = query.with_broad_phase(query.broad_phase_on(machine.is_gpu()));
@@ -345,8 +351,8 @@ impl Bench {
                 }
             }
         }
-        let (scenes, queries) = (scene::FORMULAS.len(), questions(&[]).count());
-        line(format!("sanitizer     {scenes} scenes x {queries} queries x 3 orders"))
+        let queries = questions(&[]).count();
+        line(format!("sanitizer     {count} scenes x {queries} queries x 3 orders"))
     }
 
     /// The catalogue, a line a suite as it ends.

@@ -36,7 +36,7 @@ pub struct Vtp {
 }
 
 /// The number of two triangles, of a distance: behind those of [`Kind`].
-const TRIANGLES: u8 = Kind::Ee as u8 + 1;
+const TRIANGLES: u8 = Kind::Vv as u8 + 1;
 
 impl Vtp {
     /// Takes the contacts of an answer; `step` of a sequence.

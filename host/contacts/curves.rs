@@ -146,7 +146,7 @@ pub fn crossing_curves(geometry: &[PairGeometry], bodies: &[Body]) -> Result<Cur
 /// The feature that holds an end of a row in its inside.
 fn site(pair: &PairGeometry, side: usize, part: Part, bodies: &[Body]) -> Result<Site, Error> {
     let (body, triangle) = (pair.bodies[side], pair.triangles[side]);
-    let face = bodies.get(body.index()).and_then(|own| own.faces().get(triangle as usize));
+    let face = bodies.get(body.index()).and_then(|own| own.elements().get(triangle as usize));
     let Some(face) = face else {
         return Err(Error::InvalidArgument {
             what: format!("triangle {triangle} of body {} does not exist", body.index()),

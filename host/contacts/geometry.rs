@@ -2,13 +2,15 @@
 
 use super::{Contact, Kind, NearPair};
 use crate::scene::BodyId;
+use nearmiss_kernels::abi::{nearest_of, weights_of};
 use nearmiss_kernels::math::Vec3;
-use nearmiss_kernels::prim::near::{corner_weights, edge_edge, vertex_face};
+use nearmiss_kernels::prim::near::{edge_edge, vertex_face};
 
 /// Geometry of a contact or a near pair: see [`Detector::geometry`](crate::Detector::geometry).
 ///
 /// The four vertices are a vertex and the face's corners in their order, or the ends of two edges.
-/// The end with the larger index comes first.
+/// The end with the larger index comes first. An edge and a vertex, and two points, have fewer: the
+/// last one is repeated, with weight 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ContactGeometry {
@@ -115,6 +117,7 @@ impl ContactGeometry {
         let across = match named.kind {
             Kind::Vf => sides(1, 2).cross(sides(1, 3)),
             Kind::Ee => sides(0, 1).cross(sides(2, 3)),
+            Kind::Ev | Kind::Vv => NONE,
         };
         let extent = now.iter().map(|p| length(*p - now[0])).fold(0.0, f64::max);
         // The gap at the start of a turn says nothing of the approach. The motion does.
@@ -168,24 +171,18 @@ fn unit(v: Vec3<f64>) -> Vec3<f64> {
     if length > 0.0 { over(v, length) } else { NONE }
 }
 
-/// Weights of the ends of two edges at these parameters, the larger index first.
-pub(crate) fn edge_weights([s, t]: [f64; 2]) -> [f64; 4] {
-    [1.0 - s, s, 1.0 - t, t]
-}
-
 /// Weights of the four vertices in the nearest points.
 fn weights(kind: Kind, at: [Vec3<f64>; 4]) -> [f64; 4] {
     let [a, b, c, d] = at;
     // Distances are not limited.
     let far = f64::INFINITY;
-    match kind {
-        Kind::Vf => {
-            let [x, y, z] =
-                vertex_face(a, [b, c, d], far).map_or([1.0, 0.0, 0.0], |near| corner_weights(near.at));
-            [1.0, x, y, z]
-        }
-        Kind::Ee => edge_weights(edge_edge([a, b], [c, d], far).map_or([0.0, 0.0], |near| near.at)),
-    }
+    let near = match kind {
+        Kind::Vf => vertex_face(a, [b, c, d], far),
+        Kind::Ee => edge_edge([a, b], [c, d], far),
+        Kind::Ev => vertex_face(c, [a, b, b], far),
+        Kind::Vv => None,
+    };
+    weights_of(kind as u8, nearest_of(kind as u8, near.map_or([0.0; 2], |near| near.at)))
 }
 
 #[cfg(test)]

@@ -5,11 +5,12 @@ use std::ops::Range;
 /// Features of a body by which rows are grouped: see [`Detector::grouped`](crate::Detector::grouped).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum GroupBy {
-    /// The vertex of a vertex/face row.
+    /// The vertex of a vertex/face or edge/vertex row, both of two points.
     Vertex,
-    /// Both edges of an edge/edge row.
+    /// Both edges of an edge/edge row, the edge of an edge/vertex row.
     Edge,
-    /// The face of a vertex/face row, or both triangles of a row of two.
+    /// The face of a vertex/face row, or both triangles of a row of two, which may be other
+    /// [elements](crate::Body::elements).
     Face,
     /// All vertices of a row's features: four of a row of features, six of a row of two triangles.
     Corner,

@@ -10,6 +10,8 @@ impl Kind {
         match self {
             Kind::Vf => 0,
             Kind::Ee => 2,
+            Kind::Ev => 3,
+            Kind::Vv => 4,
         }
     }
 }

@@ -26,7 +26,6 @@ pub use caveats::{Caveat, TURN_DEGREES};
 pub use curves::{Curve, Curves, crossing_curves};
 pub use first::FirstContact;
 pub use geometry::ContactGeometry;
-pub(crate) use geometry::edge_weights;
 pub use grouped::{GroupBy, Grouped};
 pub use located::{Geometry, Located};
 pub use near::{Closest, NearPair};
@@ -52,16 +51,31 @@ use nearmiss_kernels::prim::inclusion::Verdict;
 pub enum Kind {
     /// A vertex and a face. The vertex is `feature_a`, whichever body has it.
     Vf = 0,
-    /// Two edges, numbered by (larger vertex, smaller vertex), ascending.
+    /// Two edges, numbered by (larger vertex, smaller vertex), ascending; or as
+    /// [given](crate::Mesh::with_edges).
     Ee = 1,
+    /// An edge and a vertex, both of no face. The edge is `feature_a`, whichever body has it.
+    Ev = 2,
+    /// Two points: vertices of no face and no edge.
+    Vv = 3,
 }
 
 impl Kind {
     /// Number of vertices of `feature_a`: the first ones of [`ContactGeometry`].
     pub const fn vertices_of_a(self) -> usize {
         match self {
-            Kind::Vf => 1,
-            Kind::Ee => 2,
+            Kind::Vf | Kind::Vv => 1,
+            Kind::Ee | Kind::Ev => 2,
+        }
+    }
+
+    /// Its name: `vf`, `ee`, `ev`, `vv`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Kind::Vf => "vf",
+            Kind::Ee => "ee",
+            Kind::Ev => "ev",
+            Kind::Vv => "vv",
         }
     }
 }
@@ -98,11 +112,12 @@ impl Status {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[repr(C)]
 pub struct Contact {
-    /// Bodies of both features, in their order. Between two edges the smaller number comes first.
+    /// Bodies of both features, in their order. Between two edges, or two points, the smaller number
+    /// comes first.
     pub bodies: [BodyId; 2],
-    /// Index of the vertex, or of the first edge, in its body.
+    /// Index of the first feature of the [kind](Kind) in its body.
     pub feature_a: u32,
-    /// Index of the face, or of the second edge, in its body.
+    /// Index of the second feature in its body.
     pub feature_b: u32,
     /// First time of contact, or of reaching the minimum separation, in [0, 1]. A certified
     /// solver's time is never later.
@@ -122,7 +137,8 @@ pub struct Contact {
 pub struct TrianglePair {
     /// Bodies of the triangles, the smaller number first.
     pub bodies: [BodyId; 2],
-    /// Indices of the triangles in their bodies; within one body the smaller first.
+    /// Indices of the triangles in their bodies, or of other
+    /// [elements](crate::Body::elements); within one body the smaller first.
     pub triangles: [u32; 2],
 }
 

@@ -1,8 +1,8 @@
 //! Pairs of features within a distance.
 
-use super::{Kind, edge_weights};
+use super::Kind;
 use crate::scene::BodyId;
-use nearmiss_kernels::prim::near::corner_weights;
+use nearmiss_kernels::abi::weights_of;
 
 /// Nearest parts of two features. Its number (`as u8`) is used in other languages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -48,17 +48,18 @@ impl Closest {
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[repr(C)]
 pub struct NearPair {
-    /// Bodies of both features, in their order. Between two edges the smaller number comes first.
+    /// Bodies of both features, in their order. Between two edges, or two points, the smaller number
+    /// comes first.
     pub bodies: [BodyId; 2],
-    /// Index of the vertex, or of the first edge, in its body.
+    /// Index of the first feature of the [kind](Kind) in its body.
     pub feature_a: u32,
-    /// Index of the face, or of the second edge, in its body.
+    /// Index of the second feature in its body.
     pub feature_b: u32,
     /// Squared distance. Its root is off by at most 192 half ulps of the features' extent. A square
     /// below 2^-1022 has fewer digits. One below 2^-1075 is 0, even if the features are apart.
     pub squared_distance: f64,
-    /// Nearest points. Vertex and face: weights of the face's second and third corner. Two edges:
-    /// weight of the end with the smaller index, of each. [`NearPair::weights`] has all.
+    /// Nearest points. Vertex and face: weights of the face's second and third corner. Edges: weight
+    /// of the end with the smaller index, of each. [`NearPair::weights`] has all.
     pub at: [f64; 2],
     /// Kind of the pair.
     pub kind: Kind,
@@ -69,15 +70,10 @@ pub struct NearPair {
 impl NearPair {
     /// Weights of the four vertices in the two nearest points, in the order of
     /// [`ContactGeometry`](super::ContactGeometry). That is the vertex and the face's corners, or
-    /// the ends of both edges, the larger index first. The weights of each feature sum to 1.
+    /// the ends of both edges, the larger index first; for other kinds the vertices, and zeros. The
+    /// weights of each feature sum to 1.
     pub fn weights(&self) -> [f64; 4] {
-        match self.kind {
-            Kind::Ee => edge_weights(self.at),
-            Kind::Vf => {
-                let [x, y, z] = corner_weights(self.at);
-                [1.0, x, y, z]
-            }
-        }
+        weights_of(self.kind as u8, self.at)
     }
 
     /// Sort key of pairs.
@@ -93,7 +89,11 @@ impl NearPair {
         bytes[2..6].copy_from_slice(&self.feature_a.to_le_bytes());
         bytes[6..10].copy_from_slice(&self.feature_b.to_le_bytes());
         let [_, x, y, z] = self.weights();
-        let [x, y, z] = if self.kind == Kind::Ee { [x, z, 0.0] } else { [x, y, z] };
+        let [x, y, z] = match self.kind {
+            Kind::Vf => [x, y, z],
+            Kind::Ee => [x, z, 0.0],
+            Kind::Ev | Kind::Vv => [self.at[0], 0.0, 0.0],
+        };
         for (to, from) in bytes[10..].chunks_exact_mut(8).zip([self.squared_distance, x, y, z]) {
             to.copy_from_slice(&from.to_le_bytes());
         }

@@ -10,10 +10,10 @@ pub use nearmiss_kernels::abi::{FrameStatus, Hit, NearHit, NearestHit, Pair};
 pub enum Entries {
     /// [`Pair`]: two triangles.
     TrianglePairs,
-    /// [`Hit`]: a vertex and a face, or two edges, and their first time of contact. An earliest
+    /// [`Hit`]: a vertex and an [element](crate::Body::elements), or two edges, and their first time of contact. An earliest
     /// query has none.
     Contacts,
-    /// [`NearHit`]: a vertex and a face, or two edges, their squared distance and nearest points.
+    /// [`NearHit`]: a vertex and an [element](crate::Body::elements), or two edges, their squared distance and nearest points.
     NearPairs,
     /// [`NearestHit`]: two triangles, their distance and nearest points.
     Nearest,
@@ -39,7 +39,8 @@ pub struct DeviceAnswer {
     /// device has put them [in order](DeviceAnswer::is_ordered). Otherwise they have two:
     /// vertex/face pairs, then edge/edge pairs.
     pub lists: Vec<DeviceList>,
-    /// Whether entries are in canonical order: on a GPU, if there are any rows.
+    /// Whether entries are in canonical order: on a GPU, if there are any rows, and if no body has
+    /// edges of no face or points.
     pub is_ordered: bool,
     /// Address of the [`FrameStatus`]: the number of entries, and whether the answer is complete. Its
     /// counts, those of crossings included, are usable only if `short` and `invalid` are 0.

@@ -61,6 +61,8 @@ macro_rules! numbered {
 numbered! {
     Kind::Vf, VERTEX_FACE;
     Kind::Ee, EDGE_EDGE;
+    Kind::Ev, EDGE_VERTEX;
+    Kind::Vv, VERTEX_VERTEX;
     Status::Unverified, UNVERIFIED;
     Status::Certified, CERTIFIED;
     Status::Undecided, UNDECIDED;
@@ -82,7 +84,7 @@ unsafe impl Row for TrianglePair {
 unsafe impl Row for Contact {
     type Written = ContactRow;
     fn is_valid(written: &ContactRow) -> bool {
-        written.kind <= code::EDGE_EDGE && written.status <= code::UNDECIDED
+        written.kind <= code::VERTEX_VERTEX && written.status <= code::UNDECIDED
     }
 }
 
@@ -90,7 +92,7 @@ unsafe impl Row for Contact {
 unsafe impl Row for NearPair {
     type Written = NearRow;
     fn is_valid(written: &NearRow) -> bool {
-        written.kind <= code::EDGE_EDGE && written.closest <= code::NEAR_EDGES
+        written.kind <= code::VERTEX_VERTEX && written.closest <= code::NEAR_EDGES
     }
 }
 
@@ -269,7 +271,7 @@ mod tests {
     #[test]
     #[cfg(debug_assertions)]
     fn a_row_with_an_unknown_choice_is_noticed() {
-        for row in [row(2, 0), row(0, 3)] {
+        for row in [row(4, 0), row(0, 3)] {
             assert!(std::panic::catch_unwind(|| written(&[row])).is_err(), "{row:?}");
         }
     }

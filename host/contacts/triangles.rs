@@ -23,8 +23,8 @@ struct Incidence<'a> {
 
 impl<'a> Incidence<'a> {
     fn new(body: &'a Body) -> Self {
-        let faces = body.faces();
-        let topology = Topology::new(faces, body.vertex_count());
+        let faces = body.elements();
+        let topology = Topology::of(body);
         let mut of_vertex = vec![Vec::new(); body.vertex_count()];
         let mut of_edge = vec![Vec::new(); topology.edges.len()];
         for (triangle, (face, edges)) in faces.iter().zip(&topology.face_edges).enumerate() {
@@ -61,6 +61,8 @@ pub fn triangle_contacts(contacts: &[Contact], bodies: &[Body]) -> Vec<TriangleC
         let (of_a, of_b) = match contact.kind {
             Kind::Vf => (first.of_vertex[a].clone(), vec![contact.feature_b]),
             Kind::Ee => (first.of_edge[a].clone(), second.of_edge[b].clone()),
+            Kind::Ev => (first.of_edge[a].clone(), second.of_vertex[b].clone()),
+            Kind::Vv => (first.of_vertex[a].clone(), second.of_vertex[b].clone()),
         };
         for &p in &of_a {
             for &q in &of_b {

@@ -187,6 +187,14 @@ pub(super) fn corners(layout: &Layout, named: &Named) -> Option<([u32; 4], [u32;
             let ([w, x], [y, z]) = (edge(a.edge, p)?, edge(b.edge, q)?);
             ([a.vertex, a.vertex, b.vertex, b.vertex], [w, x, y, z])
         }
+        Kind::Ev => {
+            let ([w, x], y) = (edge(a.edge, p)?, b.vertex.checked_add(q)?);
+            ([a.vertex, a.vertex, b.vertex, b.vertex], [w, x, y, y])
+        }
+        Kind::Vv => {
+            let (x, y) = (a.vertex.checked_add(p)?, b.vertex.checked_add(q)?);
+            ([a.vertex, b.vertex, b.vertex, b.vertex], [x, y, y, y])
+        }
     })
 }
 

@@ -152,6 +152,8 @@ fn check(layout: &Layout, named: &[Named], counts: Counts) -> Result<(), Error> 
         let [a, b] = match row.kind {
             Kind::Vf => [counts.vertices, counts.faces],
             Kind::Ee => [counts.edges; 2],
+            Kind::Ev => [counts.edges, counts.vertices],
+            Kind::Vv => [counts.vertices; 2],
         };
         let fits = |side: usize, most: usize| {
             row.bodies[side] != counts.body || (row.features[side] as usize) < most
@@ -176,8 +178,11 @@ fn of_named(layout: &Layout, row: &Named, by: GroupBy) -> Features<4> {
     match (by, row.kind) {
         (GroupBy::Vertex, Kind::Vf) => [side(0), None, None, None],
         (GroupBy::Face, Kind::Vf) => [side(1), None, None, None],
-        (GroupBy::Edge, Kind::Ee) => [side(0), side(1), None, None],
-        (GroupBy::Vertex | GroupBy::Face, Kind::Ee) | (GroupBy::Edge, Kind::Vf) => [None; 4],
+        (GroupBy::Edge, Kind::Ee) | (GroupBy::Vertex, Kind::Vv) => [side(0), side(1), None, None],
+        (GroupBy::Edge, Kind::Ev) => [side(0), None, None, None],
+        (GroupBy::Vertex, Kind::Ev) => [side(1), None, None, None],
+        (GroupBy::Vertex, Kind::Ee) | (GroupBy::Edge, Kind::Vf | Kind::Vv) => [None; 4],
+        (GroupBy::Face, Kind::Ee | Kind::Ev | Kind::Vv) => [None; 4],
         (GroupBy::Corner, kind) => {
             let first = kind.vertices_of_a();
             let Some((starts, vertices)) = corners(layout, row) else { return [None; 4] };

@@ -13,7 +13,7 @@ impl Detector {
     /// submissions and scenes that exclude pairs of features read vertices.
     fn allows_instances(&self) -> bool {
         let bodies = self.scene.bodies();
-        let mut solid = bodies.iter().filter(|body| body.face_count() > 0);
+        let mut solid = bodies.iter().filter(|body| body.element_count() > 0);
         let is_whole =
             self.portion.share == Share::WHOLE && !self.portion.is_part && !self.portion.has_slices();
         is_whole

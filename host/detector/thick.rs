@@ -26,7 +26,7 @@ impl Thick {
         if radii.iter().all(|&radius| radius == 0.0) {
             return Thick::default();
         }
-        let is_thin = |&i: &usize| radii[i] == 0.0 && bodies[i].face_count() > 0;
+        let is_thin = |&i: &usize| radii[i] == 0.0 && bodies[i].element_count() > 0;
         let thin: Vec<usize> = (0..bodies.len()).filter(is_thin).collect();
         let moves = |i: usize| bodies[i].kind() != BodyKind::Fixed;
         let meet = |i: usize, j: usize| {

@@ -9,7 +9,11 @@ pub(crate) fn difference(t0: &Mesh, t1: &Mesh) -> Option<Problem> {
         return Some(Problem::FrameVertices { first: first(), t0: t0.vertex_count(), t1: t1.vertex_count() });
     }
     if t0.faces == t1.faces {
-        return None;
+        let differ = |what, is_different: bool| {
+            is_different.then(|| Problem::FrameElements { first: t0.name.clone(), what })
+        };
+        let edges = differ("edges", t0.loose.edges != t1.loose.edges);
+        return edges.or_else(|| differ("points", t0.loose.points != t1.loose.points));
     }
     let [count_t0, count_t1] = [t0, t1].map(Mesh::face_count);
     if count_t0 != count_t1 {

@@ -6,6 +6,7 @@
 //! Files are read and written by the package `nearmiss-io`.
 
 mod difference;
+mod loose;
 mod matrix_problem;
 mod obj_problem;
 mod ply_problem;
@@ -19,6 +20,7 @@ mod weld;
 
 pub use crate::scene::Body;
 pub(crate) use difference::difference;
+pub(crate) use loose::{Elements, Loose};
 pub use matrix_problem::MatrixProblem;
 pub use obj_problem::ObjProblem;
 pub use ply_problem::PlyProblem;
@@ -47,12 +49,13 @@ pub struct Mesh {
     pub(crate) name: String,
     pub(crate) positions: Positions,
     pub(crate) faces: Vec<[u32; 3]>,
+    pub(crate) loose: Loose,
 }
 
 impl Mesh {
     /// Validates a mesh in memory. Messages contain `name`, as they would a file name.
     ///
-    /// A mesh without triangles is legal here; see [`Mesh::require_triangles`]. Cost: one pass over
+    /// A mesh without triangles is legal here; see [`Mesh::require_elements`]. Cost: one pass over
     /// the positions and one over the faces.
     ///
     /// # Errors
@@ -61,7 +64,7 @@ impl Mesh {
     pub fn new(name: impl Into<String>, positions: Positions, faces: Vec<[u32; 3]>) -> Result<Mesh, Error> {
         let name = name.into();
         match validate::check(positions, &faces) {
-            Ok(positions) => Ok(Mesh { name, positions, faces }),
+            Ok(positions) => Ok(Mesh { name, positions, faces, loose: Loose::default() }),
             Err(problem) => Err(Error::Input { file: name, problem }),
         }
     }
@@ -91,18 +94,19 @@ impl Mesh {
         self.faces.len()
     }
 
-    /// Name, positions and faces, without a copy.
+    /// Name, positions and faces, without a copy; edges and points are dropped.
     pub fn into_parts(self) -> (String, Positions, Vec<[u32; 3]>) {
         (self.name, self.positions, self.faces)
     }
 
-    /// Refuses a mesh without triangles. Readers call this; a caller that builds meshes may.
+    /// Refuses a mesh without faces, edges and points. Readers call this; a caller that builds
+    /// meshes may.
     ///
     /// # Errors
-    /// [`Problem::NoTriangles`].
-    pub fn require_triangles(&self) -> Result<(), Error> {
-        if self.faces.is_empty() {
-            return Err(Error::Input { file: self.name.clone(), problem: Problem::NoTriangles });
+    /// [`Problem::NoElements`].
+    pub fn require_elements(&self) -> Result<(), Error> {
+        if self.faces.is_empty() && self.loose.is_empty() {
+            return Err(Error::Input { file: self.name.clone(), problem: Problem::NoElements });
         }
         Ok(())
     }

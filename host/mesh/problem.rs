@@ -118,9 +118,43 @@ pub enum Problem {
         /// Maximum number.
         limit: u64,
     },
-    /// No triangles, though the operation needs some.
-    #[error("has no triangles, and some are needed: give a mesh with at least one face")]
-    NoTriangles,
+    /// No triangles, edges or points, though the operation needs some.
+    #[error("has no triangles, edges or points, and some are needed: give a mesh with at least one face")]
+    NoElements,
+    /// An index of a vertex that does not exist, in an edge or a point of the mesh's own.
+    #[error(
+        "{what} {at} names vertex {index}, but there are {vertices} vertices, counted from 0: \
+         correct the index or remove the {what}"
+    )]
+    NoVertex {
+        /// `edge` or `point`.
+        what: &'static str,
+        /// Index of the edge or point.
+        at: usize,
+        /// The index, as in the input.
+        index: u32,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// An edge with one vertex at both ends.
+    #[error("edge {edge} has vertex {vertex} at both ends; give two vertices, or give the vertex as a point")]
+    EdgeOfOneVertex {
+        /// Index of the edge.
+        edge: usize,
+        /// The vertex.
+        vertex: u32,
+    },
+    /// Two frames of one body whose edges or points differ.
+    #[error(
+        "has other {what} than the first frame, {first}: two frames of one body must have the same {what} in the \
+         same order"
+    )]
+    FrameElements {
+        /// Name of the first frame.
+        first: String,
+        /// `edges` or `points`.
+        what: &'static str,
+    },
     /// Two frames of one body with different numbers of vertices.
     #[error(
         "has {t1} vertices, but the first frame, {first}, has {t0}: two frames of one body must have the same vertices"

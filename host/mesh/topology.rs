@@ -1,5 +1,7 @@
 //! Edges of a mesh, and the face that owns each vertex and edge.
 
+use super::loose::ordered;
+use crate::scene::Body;
 use nearmiss_emulator::Looks;
 
 /// Edge id of two equal corners, which form no edge.
@@ -47,6 +49,14 @@ impl Topology {
 
     /// Finds edges and owners, for work that may end early: `None` if it did.
     pub(crate) fn within(faces: &[[u32; 3]], vertex_count: usize, looks: &Looks) -> Option<Topology> {
+        let mut topology = Topology::of_edges(faces, vertex_count, looks)?;
+        let counts = [vertex_count as u32, topology.edges.len() as u32];
+        topology.owners = owners((faces, faces.len()), &topology.face_edges, counts, looks)?;
+        Some(topology)
+    }
+
+    /// The edges, without owners.
+    fn of_edges(faces: &[[u32; 3]], vertex_count: usize, looks: &Looks) -> Option<Topology> {
         assert!(faces.len() <= super::MAX_FACES, "faces come from a Mesh, which limits their number");
         let (starts, mut corners) = by_larger_vertex(faces, vertex_count, looks)?;
         let mut topology = Topology {
@@ -71,23 +81,73 @@ impl Topology {
                 topology.face_edges[face][k] = topology.edges.len() as u32 - 1;
             }
         }
-        let counts = [vertex_count as u32, topology.edges.len() as u32];
-        topology.owners = owners(faces, &topology.face_edges, counts, looks)?;
         Some(topology)
+    }
+
+    /// Edges and owners of all [elements](Body::elements) of a body, by the numbers that it gives
+    /// edges.
+    pub fn of(body: &Body) -> Topology {
+        Topology::of_body(body, &Looks::new(None)).unwrap_or_default()
+    }
+
+    /// As [`Topology::of`], for work that may end early: `None` if it did.
+    pub(crate) fn of_body(body: &Body, looks: &Looks) -> Option<Topology> {
+        let elements = body.elements();
+        let mut topology = Topology::of_edges(elements, body.vertex_count(), looks)?;
+        topology.number(body.edges());
+        let counts = [body.vertex_count() as u32, topology.edges.len() as u32];
+        topology.owners = owners((elements, body.face_count()), &topology.face_edges, counts, looks)?;
+        Some(topology)
+    }
+
+    /// Numbers edges as a list does; those that it lacks come behind it in their order.
+    fn number(&mut self, given: &[[u32; 2]]) {
+        if given.is_empty() {
+            return;
+        }
+        let given: Vec<[u32; 2]> = given.iter().map(|&edge| ordered(edge)).collect();
+        let mut numbers = vec![NO_EDGE; self.edges.len()];
+        for (number, edge) in given.iter().enumerate() {
+            // An edge of one vertex, which a weld can leave, is no edge.
+            if let Ok(at) = self.edges.binary_search(edge)
+                && numbers[at] == NO_EDGE
+            {
+                numbers[at] = number as u32;
+            }
+        }
+        let mut edges = given;
+        for (number, &edge) in numbers.iter_mut().zip(&self.edges) {
+            if *number == NO_EDGE {
+                *number = edges.len() as u32;
+                edges.push(edge);
+            }
+        }
+        let named = |edge: &mut u32| {
+            if *edge != NO_EDGE {
+                *edge = numbers[*edge as usize];
+            }
+        };
+        self.face_edges.iter_mut().flatten().for_each(named);
+        self.edges = edges;
     }
 }
 
 /// The owner bits of each face, from its vertices and edges and how many of these there are. A face
-/// of three times [`NO_EDGE`] in both lists owns nothing. `None` if the work ended early.
+/// of three times [`NO_EDGE`] in both lists owns nothing. Those from number `count` on are edges of no
+/// face and points: they own no vertex that a face has. `None` if the work ended early.
 pub(crate) fn owners(
-    faces: &[[u32; 3]],
+    (faces, count): (&[[u32; 3]], usize),
     face_edges: &[[u32; 3]],
     [vertices, edges]: [u32; 2],
     looks: &Looks,
 ) -> Option<Vec<u32>> {
     let mut owners = vec![0; faces.len()];
-    own(&mut owners, (face_edges, 3), edges as usize, &[|_| true], looks)?;
-    own(&mut owners, (faces, 0), vertices as usize, &[|owned| owned != 0, |_| true], looks)?;
+    own(&mut owners, (face_edges, 3), &mut vec![false; edges as usize], &[|_| true], looks)?;
+    let mut is_owned = vec![false; vertices as usize];
+    let ((faces, others), (of_faces, of_others)) = (faces.split_at(count), owners.split_at_mut(count));
+    for (faces, owners) in [(faces, of_faces), (others, of_others)] {
+        own(owners, (faces, 0), &mut is_owned, &[|owned| owned != 0, |_| true], looks)?;
+    }
     Some(owners)
 }
 
@@ -138,16 +198,15 @@ fn by_larger_vertex(faces: &[[u32; 3]], vertex_count: usize, looks: &Looks) -> O
     Some((starts, corners))
 }
 
-/// Gives each of `count` vertices or edges of faces an owner, and sets its bit from `shift` on. In
+/// Gives each vertex or edge of faces that is not owned an owner, and sets its bit from `shift` on. In
 /// each of `stages`, faces that may own get three at once, then two, then one.
 fn own(
     owners: &mut [u32],
     (faces, shift): (&[[u32; 3]], u32),
-    count: usize,
+    is_owned: &mut [bool],
     stages: &[fn(u32) -> bool],
     looks: &Looks,
 ) -> Option<()> {
-    let mut is_owned = vec![false; count];
     for (may_own, number) in stages.iter().flat_map(|may_own| [3, 2, 1].map(|number| (may_own, number))) {
         for piece in pieces(faces, looks) {
             let (first, piece) = piece?;

@@ -1,7 +1,7 @@
 //! Welding of vertices at one place, for meshes that have the vertices of a seam twice.
 
 use super::difference::difference;
-use super::{Mesh, Positions};
+use super::{Loose, Mesh, Positions};
 use crate::Error;
 use std::cmp::Ordering;
 
@@ -16,11 +16,11 @@ pub(crate) struct Vertices {
 impl Vertices {
     /// Vertices are merged if they are at one place in every frame; -0.0 and 0.0 are the same. Only
     /// used vertices are, which are finite. Cost: a sort of the vertices, 8 bytes each.
-    pub fn of(frames: &[&Positions], faces: &[[u32; 3]]) -> Vertices {
+    pub fn of(frames: &[&Positions], used_by: impl Iterator<Item = u32>) -> Vertices {
         let count = frames.first().map_or(0, |frame| frame.len());
         let mut names: Vec<u32> = (0..count as u32).collect();
         let mut used = vec![false; count];
-        faces.iter().flatten().for_each(|&vertex| used[vertex as usize] = true);
+        used_by.for_each(|vertex| used[vertex as usize] = true);
         let mut order: Vec<u32> = names.iter().copied().filter(|&vertex| used[vertex as usize]).collect();
         let places = |a: u32, b: u32| {
             let each = frames.iter().map(|frame| place(frame, a as usize, b as usize));
@@ -45,9 +45,11 @@ fn place(frame: &Positions, a: usize, b: usize) -> Ordering {
     .unwrap_or(Ordering::Equal)
 }
 
-/// Renames the vertices of faces.
-pub(crate) fn rename(vertices: &Vertices, faces: &mut [[u32; 3]]) {
-    faces.iter_mut().flatten().for_each(|vertex| *vertex = vertices.names[*vertex as usize]);
+/// Renames the vertices of faces, edges and points.
+pub(crate) fn rename(vertices: &Vertices, faces: &mut [[u32; 3]], loose: &mut Loose) {
+    let name = |vertex: u32| vertices.names[vertex as usize];
+    faces.iter_mut().flatten().for_each(|vertex| *vertex = name(*vertex));
+    loose.rename(name);
 }
 
 impl Mesh {
@@ -55,15 +57,15 @@ impl Mesh {
     /// and the number merged. The first that a face uses represents them. Faces that meet in a seam
     /// share vertices and edges afterwards.
     ///
-    /// Vertices and triangles keep their indices. Faces name the representatives, and no face uses
+    /// Vertices and triangles keep their indices. Faces, edges and points name the representatives, and no face uses
     /// the merged vertices. A triangle that loses a corner stays, as a segment or a point. Cost: a
     /// sort.
     ///
     /// For frames of one mesh use [`Mesh::weld_frames`] or [`Body::weld`](super::Body::weld).
     pub fn weld(&self) -> (Mesh, usize) {
-        let vertices = Vertices::of(&[&self.positions], &self.faces);
+        let vertices = Vertices::of(&[&self.positions], self.used());
         let mut welded = self.clone();
-        rename(&vertices, &mut welded.faces);
+        rename(&vertices, &mut welded.faces, &mut welded.loose);
         (welded, vertices.merged)
     }
 
@@ -81,13 +83,14 @@ impl Mesh {
             }
         }
         let positions: Vec<&Positions> = frames.iter().map(Mesh::positions).collect();
-        let vertices = Vertices::of(&positions, &first.faces);
-        let mut faces = first.faces.clone();
-        rename(&vertices, &mut faces);
+        let vertices = Vertices::of(&positions, first.used());
+        let (mut faces, mut loose) = (first.faces.clone(), first.loose.clone());
+        rename(&vertices, &mut faces, &mut loose);
         let welded = frames.iter().map(|frame| Mesh {
             name: frame.name.clone(),
             positions: frame.positions.clone(),
             faces: faces.clone(),
+            loose: loose.clone(),
         });
         Ok((welded.collect(), vertices.merged))
     }
@@ -95,6 +98,11 @@ impl Mesh {
     /// Number of used vertices at the place of an earlier one: those that [`Mesh::weld`] would
     /// merge. It is 0 for a mesh without seams. Cost: a sort of the vertices, 8 bytes each.
     pub fn coincident(&self) -> usize {
-        Vertices::of(&[&self.positions], &self.faces).merged
+        Vertices::of(&[&self.positions], self.used()).merged
+    }
+
+    /// Vertices of faces, edges and points, some of them several times.
+    fn used(&self) -> impl Iterator<Item = u32> + '_ {
+        self.faces.iter().flatten().copied().chain(self.loose.vertices())
     }
 }

@@ -93,7 +93,7 @@ impl BelowPrecision {
 
     /// Returns the largest coordinate of the bodies whose positions the host knows.
     pub fn largest(bodies: &[Body]) -> f64 {
-        let known = bodies.iter().filter(|body| !body.is_device_resident() && body.face_count() > 0);
+        let known = bodies.iter().filter(|body| !body.is_device_resident() && body.element_count() > 0);
         known.map(|body| largest_of(&bounds(body))).fold(0.0, f64::max)
     }
 
@@ -160,7 +160,7 @@ fn longest_side(body: &Body) -> f64 {
     let of_face = |&[p, q, r]: &[u32; 3]| {
         [[p, q], [q, r], [r, p]].into_iter().map(|[p, q]| largest(&ends, p, q)).fold(0.0, f64::max)
     };
-    body.faces().par_iter().map(of_face).reduce(|| 0.0, f64::max)
+    body.elements().par_iter().map(of_face).reduce(|| 0.0, f64::max)
 }
 
 /// Growth of boxes, as a fraction of the largest coordinate: more than rounding adds to a volume.

@@ -16,7 +16,7 @@ use crate::query::Query;
 use crate::scene::BodyId;
 use features::{Features, features};
 use nearmiss_emulator::Looks;
-use nearmiss_kernels::abi::{Hit, NearHit, NearestHit, Pair, counter};
+use nearmiss_kernels::abi::{Hit, NearHit, NearestHit, Pair, counter, nearest_of, weights_of};
 use nearmiss_kernels::prim::inclusion::Verdict;
 use nearmiss_kernels::prim::near::corner_weights;
 use std::sync::Arc;
@@ -156,17 +156,9 @@ fn each<T: Ordered + Sync, U: Row<Written = T::Row> + Send, K: Ord>(
 
 /// Returns two features within a distance.
 fn near_pair((kind, bodies, [a, b]): Features, hit: &NearHit) -> NearPair {
-    let mut pair = NearPair {
-        bodies,
-        feature_a: a,
-        feature_b: b,
-        squared_distance: hit.squared,
-        at: hit.at,
-        kind,
-        closest: Closest::VertexVertex,
-    };
-    pair.closest = Closest::of(kind, pair.weights());
-    pair
+    let at = nearest_of(kind as u8, hit.at);
+    let closest = Closest::of(kind, weights_of(kind as u8, at));
+    NearPair { bodies, feature_a: a, feature_b: b, squared_distance: hit.squared, at, kind, closest }
 }
 
 /// Returns the nearest triangles, with the indices of each body.

@@ -177,7 +177,7 @@ mod tests {
         let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
         let [t0, t1] = frames::<R>(body, size, at);
         let way = (refit, margin);
-        let enclosed = Enclosed::<R, V>::new(&device, body.faces(), [&t0, &t1], way).expect("a tree");
+        let enclosed = Enclosed::<R, V>::new(&device, body.elements(), [&t0, &t1], way).expect("a tree");
         enclosed.check().expect("sound");
         enclosed.outside(near, fault).expect("nodes")
     }

@@ -190,7 +190,7 @@ impl Edges {
     fn of(body: &Body) -> Edges {
         let mut starts = vec![0u32; body.vertex_count() + 1];
         let pairs = || {
-            let faces = body.faces().iter();
+            let faces = body.elements().iter();
             faces.flat_map(|&[x, y, z]| [[x, y], [y, x], [y, z], [z, y], [z, x], [x, z]])
         };
         pairs().for_each(|[from, _]| starts[from as usize] += 1);

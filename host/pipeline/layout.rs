@@ -2,12 +2,14 @@
 
 use super::excluded::Excluded;
 use super::hubs;
+use crate::contacts::Kind;
 use crate::error::Error;
 use crate::mesh::{NO_EDGE, Topology, owners};
 use crate::query::QueryKind;
 use crate::scene::{Body, BodyId, BodyKind, CollisionFilter, Scene};
 use nearmiss_emulator::Looks;
-use nearmiss_kernels::abi::{BodyRecord, EVERY, NodeFilter};
+use nearmiss_kernels::abi::rows::code;
+use nearmiss_kernels::abi::{BodyRecord, EVERY, Element, NodeFilter};
 use nearmiss_kernels::bvh::filter::is_left_out;
 use std::sync::Arc;
 
@@ -62,6 +64,8 @@ pub struct FeatureTopology {
     pub face_edges: Vec<[u32; 3]>,
     /// Features that each triangle owns.
     pub owners: Vec<u32>,
+    /// What each triangle stands for; empty if all are faces.
+    pub elements: Vec<Element>,
 }
 
 impl Layout {
@@ -96,12 +100,12 @@ impl Layout {
                 group,
                 mask,
             });
-            if body.face_count() > 0 {
+            if body.element_count() > 0 {
                 all.trees[usize::from(body.kind() == BodyKind::Fixed)].push(i);
             }
-            faces.extend(body.faces().iter().map(|face| face.map(|v| v + at.vertex)));
+            faces.extend(body.elements().iter().map(|face| face.map(|v| v + at.vertex)));
             at.vertex += body.vertex_count() as u32;
-            at.triangle += body.face_count() as u32;
+            at.triangle += body.element_count() as u32;
             all.starts.push(at);
         }
         all.faces = Arc::new(faces);
@@ -164,7 +168,9 @@ impl Layout {
             let faces = rows(&self.faces, ends[0].vertex);
             let face_edges = rows(&features.face_edges, ends[0].edge);
             let counts = [ends[1].vertex - ends[0].vertex, ends[1].edge - ends[0].edge];
-            features.owners[own.clone()].copy_from_slice(&owners(&faces, &face_edges, counts, looks)?);
+            let face_count = own.clone().filter(|&face| self.kind(face) == Kind::Vf).count();
+            let owners = owners((&faces, face_count), &face_edges, counts, looks)?;
+            features.owners[own.clone()].copy_from_slice(&owners);
         }
         self.features = Arc::new(features);
         Some(self)
@@ -174,8 +180,9 @@ impl Layout {
     /// in triangles.
     pub fn with_features(mut self, bodies: &[Body], looks: &Looks) -> Option<Layout> {
         let mut features = FeatureTopology::default();
+        let has_elements = bodies.iter().any(|body| body.element_count() > body.face_count());
         for (i, body) in bodies.iter().enumerate() {
-            let own = Topology::within(body.faces(), body.vertex_count(), looks)?;
+            let own = Topology::of_body(body, looks)?;
             let (vertex, edge) = (self.starts[i].vertex, features.edges.len() as u32);
             features.edges.extend(own.edges.iter().map(|edge| edge.map(|v| v + vertex)));
             // An edge that does not exist has no owner, so its number is never used.
@@ -183,6 +190,17 @@ impl Layout {
             features.face_edges.extend(own.face_edges.iter().map(numbered));
             features.owners.extend(&own.owners);
             self.starts[i + 1].edge = features.edges.len() as u32;
+            if has_elements {
+                let first = features.elements.len();
+                let of = |at: usize| match body.element_kind(at) {
+                    Kind::Vf | Kind::Ee => (first + at) as u32,
+                    Kind::Ev => features.face_edges[first + at][0],
+                    Kind::Vv => body.elements()[at][0] + vertex,
+                };
+                let element = |at: usize| Element { kind: body.element_kind(at) as u32, number: of(at) };
+                let elements: Vec<Element> = (0..body.element_count()).map(element).collect();
+                features.elements.extend(elements);
+            }
         }
         self.features = Arc::new(features);
         self.disowned(looks)
@@ -195,6 +213,15 @@ impl Layout {
             record.self_collision = (body.self_collides() && kind.is_within_bodies()).into();
         }
         layout
+    }
+
+    /// Returns what a triangle stands for, as the kind of a row of it and a vertex.
+    pub fn kind(&self, triangle: usize) -> Kind {
+        match self.features.elements.get(triangle).map(|element| element.kind as u8) {
+            Some(code::EDGE_VERTEX) => Kind::Ev,
+            Some(code::VERTEX_VERTEX) => Kind::Vv,
+            _ => Kind::Vf,
+        }
     }
 
     /// Returns whether edges are numbered.

@@ -11,7 +11,7 @@ use crate::device::{Buffer, Device, Kept};
 use crate::error::Error;
 use crate::pipeline::{launch, purpose};
 use nearmiss_kernels::abi::{
-    Bins, Counter, Counters, Feature, Hit, Named, NearHit, OrderArgs, Output, Pair, Span, counter,
+    Bins, Counter, Counters, Element, Feature, Hit, Named, NearHit, OrderArgs, Output, Pair, Span, counter,
 };
 use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::stage::order::starts::{EACH, MOST_TILES};
@@ -19,8 +19,6 @@ use nearmiss_kernels::stage::order::{RUN_BITS, WAYS_BITS};
 
 /// A kind of contact that the device can order.
 pub trait Ordered: Named {
-    /// First features of each list: bins are numbered through them.
-    const BINS: &[Feature];
     /// The kernel that counts each bin.
     type Count: Entry<Args = OrderArgs<Self>>;
     /// The kernel that puts a key of each into its bin.
@@ -32,7 +30,6 @@ pub trait Ordered: Named {
 }
 
 impl Ordered for Pair {
-    const BINS: &[Feature] = &[Feature::TRIANGLE];
     type Count = entry::order_count_pair;
     type Place = entry::order_place_pair;
     type Merge = entry::order_merge_pair;
@@ -40,7 +37,6 @@ impl Ordered for Pair {
 }
 
 impl Ordered for Hit {
-    const BINS: &[Feature] = &[Feature::VERTEX, Feature::EDGE];
     type Count = entry::order_count_hit;
     type Place = entry::order_place_hit;
     type Merge = entry::order_merge_hit;
@@ -48,7 +44,6 @@ impl Ordered for Hit {
 }
 
 impl Ordered for NearHit {
-    const BINS: &[Feature] = &[Feature::VERTEX, Feature::EDGE];
     type Count = entry::order_count_near;
     type Place = entry::order_place_near;
     type Merge = entry::order_merge_near;
@@ -69,8 +64,10 @@ pub struct Order<T: Ordered> {
     keys: [Buffer<u64>; 2],
     /// First features of each body; none for one body.
     bodies: Buffer<u32>,
-    /// The bin of the first edge.
-    second_bin: u32,
+    /// What triangles stand for; empty if all are faces.
+    elements: Buffer<Element>,
+    /// Number of vertices, or of triangles; and of edges.
+    first_features: [u32; 2],
     /// Words of a tile of bins.
     words: u32,
     levels: Levels,
@@ -168,8 +165,11 @@ impl<T: Ordered> Order<T> {
     /// Device errors.
     pub fn new(device: &Device, layout: &Layout, capacity: usize) -> Result<Self, Error> {
         let ends = layout.starts.last().copied().unwrap_or_default();
-        let bins = |of: &Feature| u64::from(starts(&ends)[of.place() as usize]);
-        let (second_bin, all) = (bins(&T::BINS[0]), T::BINS.iter().map(bins).sum::<u64>());
+        let elements: &[Element] = if T::OF_FEATURES { &layout.features.elements } else { &[] };
+        let first_features = if T::OF_FEATURES { [ends.vertex, ends.edge] } else { [ends.triangle, 0] };
+        // Vertices and faces, edges; then edges and points, pairs of points.
+        let kinds = if elements.is_empty() { 1 } else { 2 };
+        let all = kinds * first_features.iter().map(|&count| u64::from(count)).sum::<u64>();
         let order = device.of(purpose::ORDER);
         let most = u64::from(u32::MAX) / 2;
         if all > most {
@@ -191,7 +191,8 @@ impl<T: Ordered> Order<T> {
             slots: order.buffer(0)?,
             keys: [order.buffer(0)?, order.buffer(0)?],
             bodies: order.upload(if layout.starts.len() > 2 { &table } else { &[] })?,
-            second_bin: second_bin as u32,
+            elements: order.upload(elements)?,
+            first_features,
             words: of_a_tile,
             levels: Levels(0),
             is_clear: false,
@@ -200,6 +201,10 @@ impl<T: Ordered> Order<T> {
 
     fn prepare(&mut self, device: &Device) -> Result<(), Error> {
         let capacity = self.rows.capacity();
+        // Their kinds would be in one list. The caller gets one of triangles and one of edges.
+        if !self.elements.is_empty() {
+            return Ok(());
+        }
         if self.contacts.as_ref().is_none_or(|contacts| contacts.len() != capacity) {
             self.contacts = Some(device.of(purpose::ORDER).buffer(capacity)?);
         }
@@ -264,10 +269,13 @@ impl<T: Ordered> Order<T> {
             keys: self.keys[0].span(),
             merged: self.keys[1].span(),
             bodies: self.bodies.span(),
-            second_bin: self.second_bin,
+            elements: self.elements.span(),
+            vertices: self.first_features[0],
+            edges: self.first_features[1],
             run: 0,
             ways: 0,
             decided: given.decided.into(),
+            pad: 0,
         };
         let (capacity, tiles) = (self.rows.capacity(), self.sums.len() as u32);
         launch::striding::<T::Count>(device, capacity, &args)?;

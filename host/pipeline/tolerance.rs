@@ -46,7 +46,7 @@ impl Tolerances {
     /// per side of bodies whose default is not yet computed, and a sort of the bodies.
     pub fn of(bodies: &[Body]) -> Tolerances {
         let all: Vec<f64> = bodies.iter().map(own).collect();
-        let mut order: Vec<usize> = (0..bodies.len()).filter(|&i| bodies[i].face_count() > 0).collect();
+        let mut order: Vec<usize> = (0..bodies.len()).filter(|&i| bodies[i].element_count() > 0).collect();
         order.sort_by(|&i, &j| all[i].total_cmp(&all[j]));
         // The tolerance of each pair is that of its first body, which has the smaller one.
         let moves = |i: usize| bodies[i].kind() != BodyKind::Fixed;

@@ -3,9 +3,10 @@
 use super::place::radius;
 use super::{BodyKind, CollisionFilter, DeviceMotion, Pose, PosePath, PoseStep, Thickness};
 use crate::Error;
+use crate::contacts::Kind;
 #[cfg(doc)]
 use crate::mesh::Problem;
-use crate::mesh::{Mesh, Positions, Vertices, difference, rename};
+use crate::mesh::{Elements, Loose, Mesh, Positions, Vertices, difference, rename};
 use nearmiss_kernels::math::Vec3;
 
 /// Faces with the positions of one frame, or of both ends of a step. Vertices move in straight
@@ -13,7 +14,10 @@ use nearmiss_kernels::math::Vec3;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
     pub(super) name: String,
-    pub(super) faces: Vec<[u32; 3]>,
+    /// Faces, edges of no face and points, as the detector tests them.
+    pub(super) elements: Elements,
+    /// Edges and points, as given.
+    pub(super) loose: Loose,
     pub(super) positions_t0: Positions,
     pub(super) positions_t1: Option<Positions>,
     pub(super) kind: BodyKind,
@@ -57,10 +61,11 @@ pub(crate) enum Resident {
 impl Body {
     /// A deformable body at one frame.
     pub fn deformable(mesh: Mesh) -> Body {
-        let Mesh { name, positions, faces } = mesh;
+        let Mesh { name, positions, faces, loose } = mesh;
         Body {
             name,
-            faces,
+            elements: Elements::new(faces, &loose, positions.len()),
+            loose,
             positions_t0: positions,
             positions_t1: None,
             kind: BodyKind::Deformable,
@@ -81,15 +86,17 @@ impl Body {
 
     /// A body that moves as a whole; without a pose it is in the position of its mesh.
     pub fn rigid(mesh: Mesh) -> Body {
-        let points = mesh.faces.iter().flatten().filter_map(|&v| mesh.positions.get_f64(v as usize));
-        let radius = radius(points);
-        Body { kind: BodyKind::Rigid, radius, ..Body::deformable(mesh) }
+        let body = Body::deformable(mesh);
+        let used = body.elements().iter().flatten();
+        let radius = radius(used.filter_map(|&v| body.positions_t0.get_f64(v as usize)));
+        Body { kind: BodyKind::Rigid, radius, ..body }
     }
 
     /// A body without vertices and triangles: the remainder of one that was removed from a scene.
     pub(crate) fn none() -> Body {
         let nothing = Positions::F32(Vec::new());
-        Body::deformable(Mesh { name: "nothing".into(), positions: nothing, faces: Vec::new() })
+        let loose = Loose::default();
+        Body::deformable(Mesh { name: "nothing".into(), positions: nothing, faces: Vec::new(), loose })
     }
 
     /// Sets the collision filter.
@@ -163,7 +170,7 @@ impl Body {
     /// has read, two of each body, of which it is number `own`; `None` if it rests or they are not
     /// known. `None` for other bodies.
     pub(crate) fn step_among(&self, own: usize, found: &[Pose]) -> Option<PoseStep> {
-        if self.kind != BodyKind::Rigid || self.faces.is_empty() {
+        if self.kind != BodyKind::Rigid || self.elements().is_empty() {
             return None;
         }
         if !self.is_device_resident() {
@@ -190,7 +197,7 @@ impl Body {
     /// Returns the pivot and the rotation vector of a rigid body with these poses. `None` if it does
     /// not turn, or its vertices go straight.
     pub(crate) fn turn(&self) -> Option<([f64; 3], Vec3<f64>)> {
-        let is_rigid = self.kind == BodyKind::Rigid && !self.faces.is_empty();
+        let is_rigid = self.kind == BodyKind::Rigid && !self.elements().is_empty();
         if is_rigid { self.path.turn(self.poses) } else { None }
     }
 
@@ -209,7 +216,7 @@ impl Body {
             (a, b) if a.is_f64() == b.is_f64() => (a, b),
             (a, b) => (a.promoted(), b.promoted()),
         };
-        let still = Body::deformable(Mesh { name: t0.name, positions: positions_t0, faces: t0.faces });
+        let still = Body::deformable(Mesh { positions: positions_t0, ..t0 });
         Ok(Body { positions_t1: Some(positions_t1), ..still })
     }
 
@@ -220,7 +227,38 @@ impl Body {
 
     /// Three vertex indices for each triangle.
     pub fn faces(&self) -> &[[u32; 3]] {
-        &self.faces
+        &self.elements.corners[..self.elements.faces]
+    }
+
+    /// Edges, as given: see [`Mesh::with_edges`].
+    pub fn edges(&self) -> &[[u32; 2]] {
+        &self.loose.edges
+    }
+
+    /// Points, as given: see [`Mesh::with_points`].
+    pub fn points(&self) -> &[u32] {
+        &self.loose.points
+    }
+
+    /// What takes part, in the numbering of discrete queries and distances: the triangles; then
+    /// edges of no face as `[a, b, b]`, in the order given; then points as `[p, p, p]`. Each once.
+    pub fn elements(&self) -> &[[u32; 3]] {
+        &self.elements.corners
+    }
+
+    /// Number of [elements](Body::elements).
+    pub fn element_count(&self) -> usize {
+        self.elements.corners.len()
+    }
+
+    /// What an element is.
+    pub(crate) fn element_kind(&self, element: usize) -> Kind {
+        let Elements { faces, edges, .. } = self.elements;
+        match element {
+            face if face < faces => Kind::Vf,
+            edge if edge < faces + edges => Kind::Ev,
+            _ => Kind::Vv,
+        }
     }
 
     /// Whether only the device has the body's place:
@@ -254,7 +292,7 @@ impl Body {
 
     /// Number of triangles.
     pub fn face_count(&self) -> usize {
-        self.faces.len()
+        self.elements.faces
     }
 
     /// Returns the body with vertices merged that coincide in all of its frames, and their number;
@@ -266,13 +304,14 @@ impl Body {
     /// As [`Body::weld`], for vertices that coincide in `frames` too.
     pub fn weld_through(&self, frames: &[Positions]) -> (Body, usize) {
         let own = std::iter::once(&self.positions_t0).chain(&self.positions_t1);
-        let vertices = Vertices::of(&own.chain(frames).collect::<Vec<_>>(), &self.faces);
-        let mut welded = self.clone();
-        rename(&vertices, &mut welded.faces);
-        (welded, vertices.merged)
+        let vertices = Vertices::of(&own.chain(frames).collect::<Vec<_>>(), self.used());
+        let (mut faces, mut loose) = (self.faces().to_vec(), self.loose.clone());
+        rename(&vertices, &mut faces, &mut loose);
+        let elements = Elements::new(faces, &loose, self.vertex_count());
+        (Body { elements, loose, ..self.clone() }, vertices.merged)
     }
 
-    /// Number of vertices that a face uses and that coincide, in all frames, with an earlier one;
+    /// Number of vertices of elements that coincide, in all frames, with an earlier one;
     /// as [`Mesh::coincident`].
     pub fn coincident(&self) -> usize {
         self.vertices().merged
@@ -280,7 +319,12 @@ impl Body {
 
     fn vertices(&self) -> Vertices {
         let frames: Vec<&Positions> = std::iter::once(&self.positions_t0).chain(&self.positions_t1).collect();
-        Vertices::of(&frames, &self.faces)
+        Vertices::of(&frames, self.used())
+    }
+
+    /// Vertices of elements, some of them several times.
+    fn used(&self) -> impl Iterator<Item = u32> + '_ {
+        self.elements().iter().flatten().copied()
     }
 
     /// Whether there are two frames.
@@ -293,16 +337,19 @@ impl Body {
         let mesh = |positions: &Positions| Mesh {
             name: self.name.clone(),
             positions: positions.clone(),
-            faces: self.faces.clone(),
+            faces: self.faces().to_vec(),
+            loose: self.loose.clone(),
         };
         std::iter::once(&self.positions_t0).chain(&self.positions_t1).map(mesh).collect()
     }
 
-    /// xxh3 of the faces and of the bits of every position, little-endian: the same on every
+    /// xxh3 of the faces, edges and points and of the bits of every position, little-endian: the same on every
     /// machine.
     pub fn fingerprint(&self) -> u64 {
         let mut hash = xxhash_rust::xxh3::Xxh3::new();
-        self.faces.iter().flatten().for_each(|i| hash.update(&i.to_le_bytes()));
+        let Loose { edges, points } = &self.loose;
+        let indices = self.faces().iter().flatten().chain(edges.iter().flatten()).chain(points);
+        indices.for_each(|i| hash.update(&i.to_le_bytes()));
         for frame in std::iter::once(&self.positions_t0).chain(&self.positions_t1) {
             match frame {
                 Positions::F32(points) => points.iter().flatten().for_each(|x| hash.update(&x.to_le_bytes())),

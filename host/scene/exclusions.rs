@@ -228,8 +228,8 @@ fn check(body: &Body, own: &Exclusions) -> Result<(), Error> {
         body.is_single(positions.into())?;
     }
     match own.faces.last() {
-        Some(&face) if face as usize >= body.face_count() => {
-            Err(missing("face", "faces", face, body, body.face_count()))
+        Some(&face) if face as usize >= body.element_count() => {
+            Err(missing("face", "faces", face, body, body.element_count()))
         }
         _ => Ok(()),
     }

@@ -93,7 +93,7 @@ impl Body {
     /// Returns whether f32 can compute with positions; an error if f64 cannot either.
     pub(crate) fn is_single(&self, points: Points) -> Result<bool, Error> {
         let wrong = |problem| Error::Input { file: self.name.clone(), problem };
-        mesh::is_single(points, &self.faces).map_err(wrong)
+        mesh::is_single(points, self.elements()).map_err(wrong)
     }
 
     pub(crate) fn check_pose(&self, pose: &Pose) -> Result<(), Error> {
@@ -102,7 +102,7 @@ impl Body {
             return Ok(());
         }
         // The ball in which it turns is up to twice as large as the body: then its vertices decide.
-        let used = self.faces.iter().flatten().filter_map(|&v| self.positions_t0.get_f64(v as usize));
+        let used = self.elements().iter().flatten().filter_map(|&v| self.positions_t0.get_f64(v as usize));
         let size = used.flat_map(|point| pose.apply(point)).fold(0.0_f64, |most, x| most.max(x.abs()));
         if size > MAX_ABS_F64 {
             return Err(Error::Input { file: self.name.clone(), problem: Problem::PoseTooFar { size } });
@@ -150,7 +150,7 @@ impl Body {
     }
 
     fn put_vertices(&mut self, t0: Points, t1: Option<Points>) {
-        let single = |points| matches!(mesh::is_single(points, &self.faces), Ok(true));
+        let single = |points| matches!(mesh::is_single(points, self.elements()), Ok(true));
         let as_f64 = !std::iter::once(t0).chain(t1).all(single);
         self.keep_tolerance();
         t0.copy_to(&mut self.positions_t0, as_f64);
@@ -246,12 +246,12 @@ impl Body {
     pub(crate) fn needs_f64(&self) -> bool {
         self.positions_t0.is_f64()
             || self.device_motion().is_some_and(DeviceMotion::has_f64)
-            || (self.kind == BodyKind::Rigid && !self.faces.is_empty())
+            || (self.kind == BodyKind::Rigid && !self.elements().is_empty())
     }
 
     /// Returns the angle of the turn between two poses, in degrees, and the bulge. That is the
     /// largest distance of a vertex in straight motion from its arc. `None` for a turn up to
-    /// `least` degrees. Cost: a pass over the faces of a body that turns farther.
+    /// `least` degrees. Cost: a pass over the elements of a body that turns farther.
     pub(crate) fn turn_beyond(&self, least: f64, [start, end]: [Pose; 2]) -> Option<[f64; 2]> {
         let (angle, axis) = start.turn_to(&end);
         let degrees = angle.to_degrees();
@@ -267,7 +267,7 @@ impl Body {
             let across = point.cross(axis);
             across.dot(across).sqrt()
         };
-        let farthest = self.faces.iter().flatten().map(from_axis).fold(0.0, f64::max);
+        let farthest = self.elements().iter().flatten().map(from_axis).fold(0.0, f64::max);
         // 1 - cos(angle / 2), without its cancellation.
         Some([degrees, farthest * 2.0 * (angle / 4.0).sin().powi(2)])
     }
@@ -275,7 +275,7 @@ impl Body {
     /// Box around a rigid body at both ends of the step, if the host has its poses; `None` for
     /// others.
     pub(crate) fn posed_box(&self) -> Option<Bounds> {
-        let rigid = self.kind == BodyKind::Rigid && !self.faces.is_empty() && !self.is_device_resident();
+        let rigid = self.kind == BodyKind::Rigid && !self.elements().is_empty() && !self.is_device_resident();
         rigid.then(|| union(self.around(&self.poses[0]), self.around(&self.poses[1])))
     }
 

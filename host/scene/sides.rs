@@ -1,6 +1,7 @@
 //! Sides of triangles: their mean, and the default tolerance that follows from it.
 
 use super::Body;
+use crate::contacts::Kind;
 use crate::query::Certified;
 
 /// [`Certified::TOLERANCE`] of the mean side of the triangles at t = 0, rounded down to a power of
@@ -9,13 +10,19 @@ pub fn of_edges(bodies: &[Body]) -> f64 {
     power_below(Certified::TOLERANCE * mean_side(bodies))
 }
 
-/// Mean side of the triangles at t = 0, over each triangle's own three; 0 if there are none.
+/// Mean side of the triangles at t = 0, over each triangle's own three, and of edges of no face; 0 if
+/// there are none.
 pub fn mean_side(bodies: &[Body]) -> f64 {
     let (mut sum, mut count) = (0.0, 0u64);
     for body in bodies {
         let at = body.positions_t0().to_f64();
-        for face in body.faces() {
-            for k in 0..3 {
+        for (element, face) in body.elements().iter().enumerate() {
+            let sides = match body.element_kind(element) {
+                Kind::Ev => 1,
+                Kind::Vv => 0,
+                Kind::Vf | Kind::Ee => 3,
+            };
+            for k in 0..sides {
                 let [p, q] = [face[k], face[(k + 1) % 3]].map(|v| at[v as usize]);
                 let d = [0, 1, 2].map(|k| p[k] - q[k]);
                 sum += (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();

@@ -92,7 +92,7 @@ impl MeshFile {
         let Parsed { mut positions, fans, .. } = parsed;
         while found.len() < most {
             let mesh = Mesh::new(name.clone(), positions.clone(), fans.faces.clone());
-            let made = mesh.and_then(|mesh| mesh.require_triangles().map(|()| mesh));
+            let made = mesh.and_then(|mesh| mesh.require_elements().map(|()| mesh));
             match made {
                 Ok(_) if !found.is_empty() => break,
                 Ok(_) => match MeshFile::parse_by((name, format, bytes), others) {
@@ -288,7 +288,7 @@ fn fans(
         Err(problem) => return Err(Error::Input { file: name, problem }),
     };
     let mesh = Mesh::new(name, positions, fans.faces)?;
-    mesh.require_triangles()?;
+    mesh.require_elements()?;
     let notes = notes.of(mesh.name());
     Ok(MeshFile { mesh, polygons: fans.polygons, notes })
 }

@@ -3,11 +3,10 @@
 use crate::asked::Does;
 use crate::detector::Detector;
 use crate::errors::{choice, integer, raised};
-use crate::host::{Most, asarray, positions, rows};
+use crate::host::{Most, indices, positions, rows};
 use crate::key::{self, Key};
 use nearmiss::mesh::Positions;
 use nearmiss::scene::{BodyId, Exclusions, RestShape, Scene};
-use numpy::{PyArrayDescrMethods, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 /// Exclusions of a body as given: without a rest shape it is the body's place.
@@ -28,7 +27,7 @@ impl Given {
         if rest.is_some() && within.is_none() {
             return Err(choice("rest without within", "give the distance at rest, or leave rest out"));
         }
-        let faces = faces.map(|faces| numbers::<1>(faces, "faces")).transpose()?.unwrap_or_default();
+        let faces = faces.map(|faces| indices::<1>(faces, "faces")).transpose()?.unwrap_or_default();
         Ok(Given {
             // 0 is refused with the others' faults.
             ring: ring.map(|ring| integer(ring, "ring", [0, u32::MAX.into()])).transpose()?.map(|n| n as u32),
@@ -53,36 +52,7 @@ impl Given {
 
 /// Pairs of vertices: an array (n, 2), or a list of pairs.
 pub fn pairs(given: &Bound<'_, PyAny>) -> PyResult<Vec<[u32; 2]>> {
-    numbers(given, "pairs")
-}
-
-/// Rows of `N` indices, copied; of one index a plain list.
-fn numbers<const N: usize>(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<[u32; N]>> {
-    let array = asarray(object)?;
-    let shape = array.shape().to_vec();
-    let advice = if N == 1 { "give a list of indices" } else { "give pairs of indices: shape (n, 2)" };
-    if shape.contains(&0) {
-        return Ok(Vec::new());
-    }
-    if !matches!(array.dtype().kind(), b'i' | b'u') {
-        return Err(choice(format!("{what} of type {}", array.dtype().str()?), advice));
-    }
-    if !(N == 1 && shape.len() == 1 || shape.len() == 2 && shape[1] == N) {
-        return Err(choice(format!("{what} of shape {shape:?}"), advice));
-    }
-    let wide = array.call_method1("astype", ("=i8",))?.call_method1("reshape", (-1, N))?;
-    let wide = wide.cast::<numpy::PyArray2<i64>>()?.readonly();
-    let mut rows = Vec::with_capacity(shape[0]);
-    for row in wide.as_array().rows() {
-        let mut own = [0; N];
-        for (to, &from) in own.iter_mut().zip(row) {
-            *to = u32::try_from(from).map_err(|_| {
-                choice(format!("{what} have index {from}"), "indices are from 0 to 4294967295")
-            })?;
-        }
-        rows.push(own);
-    }
-    Ok(rows)
+    indices(given, "pairs")
 }
 
 impl Detector {

@@ -175,6 +175,35 @@ pub fn faces(object: &Bound<'_, PyAny>, name: &str, vertices: usize) -> PyResult
     Ok(faces)
 }
 
+/// Rows of `N` indices, copied; of one index a plain list.
+pub fn indices<const N: usize>(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<[u32; N]>> {
+    let array = asarray(object)?;
+    let shape = array.shape().to_vec();
+    let advice = if N == 1 { "give a list of indices" } else { "give pairs of indices: shape (n, 2)" };
+    if shape.contains(&0) {
+        return Ok(Vec::new());
+    }
+    if !matches!(array.dtype().kind(), b'i' | b'u') {
+        return Err(choice(format!("{what} of type {}", array.dtype().str()?), advice));
+    }
+    if !(N == 1 && shape.len() == 1 || shape.len() == 2 && shape[1] == N) {
+        return Err(choice(format!("{what} of shape {shape:?}"), advice));
+    }
+    let wide = array.call_method1("astype", ("=i8",))?.call_method1("reshape", (-1, N))?;
+    let wide = wide.cast::<numpy::PyArray2<i64>>()?.readonly();
+    let mut rows = Vec::with_capacity(shape[0]);
+    for row in wide.as_array().rows() {
+        let mut own = [0; N];
+        for (to, &from) in own.iter_mut().zip(row) {
+            *to = u32::try_from(from).map_err(|_| {
+                choice(format!("{what} have index {from}"), "indices are from 0 to 4294967295")
+            })?;
+        }
+        rows.push(own);
+    }
+    Ok(rows)
+}
+
 /// Rows of `N` numbers in double precision, copied.
 pub fn doubles<const N: usize>(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<[f64; N]>> {
     let array = asarray(object)?;

@@ -2,7 +2,7 @@
 
 use crate::errors::{choice, integer, one_of, optional, raised};
 use crate::exclusions;
-use crate::host::{Most, faces, points, positions, rows};
+use crate::host::{Most, faces, indices, points, positions, rows};
 use crate::key::{self, Key, Pairs, bodies, body_of, numbers, pairs_of};
 use crate::matrix::pose_of;
 use crate::pose::Pose;
@@ -11,13 +11,15 @@ use crate::thickness::{self, thickness_of};
 use nearmiss::scene::{BodyKind, CollisionFilter};
 use nearmiss::words::counted;
 use nearmiss::{Mesh, Thickness};
+use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 /// Mesh that takes part in a scene: its way to move, and the bodies that it may meet.
 ///
 /// - `vertices`: (n, 3) numbers, copied. float32 and float64 are kept, others become float64.
-/// - `faces`: (m, 3) integers from 0, the vertices of each triangle, copied.
+/// - `faces`: (m, 3) integers from 0, the vertices of each triangle, copied. It may be empty if there
+///   are edges or points.
 /// - `kind`: "deformable" (each vertex moves by itself), "rigid" (moves by a Pose) or "fixed" (never
 ///   moves; cheapest).
 /// - `self_collision`: whether the body is tested against itself. Default: deformable bodies are,
@@ -30,6 +32,12 @@ use pyo3::types::{PyDict, PyTuple};
 /// - `thickness`: radius around the surface that belongs to the body, a length of at least 0; or one
 ///   for each vertex, in between linear. Near queries and queries in motion add those of both bodies
 ///   to their distance; all others ignore them.
+///
+/// - `edges`: (k, 2) integers. Edges of no face take part by themselves, as hair and threads do. Edges
+///   of answers have their numbers in this list; those of faces that it lacks come behind, by
+///   (larger vertex, smaller vertex).
+/// - `points`: vertices that take part by themselves, as particles do. Those of a face or an edge do
+///   anyway.
 ///
 /// Raises InvalidArgumentError for a thickness that is no length.
 /// Raises InputError for vertices that are not finite and for indices without a vertex.
@@ -45,9 +53,11 @@ impl Body {
         signature = (
             vertices, faces, *, kind = "deformable", self_collision = None, environment = Some(0),
             group = u32::MAX, mask = u32::MAX, name = "a mesh", pose = None, thickness = None,
+            edges = None, points = None,
         ),
         text_signature = "(vertices, faces, *, kind='deformable', self_collision=None, environment=0, \
-            group=0xFFFFFFFF, mask=0xFFFFFFFF, name='a mesh', pose=None, thickness=0.0)"
+            group=0xFFFFFFFF, mask=0xFFFFFFFF, name='a mesh', pose=None, thickness=0.0, \
+            edges=None, points=None)"
     )]
     #[allow(clippy::too_many_arguments, reason = "they are named")]
     fn new(
@@ -62,6 +72,8 @@ impl Body {
         name: &str,
         pose: Option<Bound<'_, PyAny>>,
         thickness: Option<Bound<'_, PyAny>>,
+        edges: Option<Bound<'_, PyAny>>,
+        points: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Body> {
         let make = match kind {
             "deformable" => nearmiss::Body::deformable,
@@ -79,8 +91,14 @@ impl Body {
         let on_itself = self_collision;
         let thickness = thickness.map_or(Ok(Thickness::default()), |given| thickness_of(&given, name))?;
         let filter = CollisionFilter { environment, group, mask, self_collision: on_itself };
-        let made = py.detach(|| Mesh::new(name, given, triangles).map(|mesh| make(mesh).with_filter(filter)));
-        let made = made.map(|body| body.with_thickness(thickness));
+        let edges = edges.map_or(Ok(Vec::new()), |edges| indices(&edges, &format!("edges of {name}")))?;
+        let points: Vec<[u32; 1]> =
+            points.map_or(Ok(Vec::new()), |points| indices(&points, &format!("points of {name}")))?;
+        let made = py.detach(|| {
+            let mesh =
+                Mesh::new(name, given, triangles)?.with_edges(edges)?.with_points(points.into_flattened())?;
+            Ok(make(mesh).with_filter(filter).with_thickness(thickness))
+        });
         let body = made.and_then(|body| body.validate().map(|()| body)).map_err(raised)?;
         let Some(pose) = pose else { return Ok(Body { body }) };
         if body.kind() != BodyKind::Rigid {
@@ -129,6 +147,18 @@ impl Body {
         self.body.face_count()
     }
 
+    /// Edges, as given: (k, 2) integers.
+    #[getter]
+    fn edges<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<u32>> {
+        rows(py, self.body.edges())
+    }
+
+    /// Points, as given.
+    #[getter]
+    fn points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        PyArray1::from_slice(py, self.body.points())
+    }
+
     /// For copy and pickle.
     fn __reduce__<'py>(body: &Bound<'py, Self>) -> PyResult<Remade<'py>> {
         let (py, Body { body: own }) = (body.py(), body.get());
@@ -147,6 +177,8 @@ impl Body {
         named.set_item("name", own.name())?;
         named.set_item("pose", body.getattr("pose")?)?;
         named.set_item("thickness", body.getattr("thickness")?)?;
+        named.set_item("edges", body.getattr("edges")?)?;
+        named.set_item("points", body.getattr("points")?)?;
         remade(body.get_type(), mesh, named)
     }
 

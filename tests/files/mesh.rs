@@ -41,8 +41,8 @@ fn validation_refuses_each_fault() {
     assert!(matches!(found, Problem::TooLarge { vertex: 3, axis: 'z', limit: "2^480", .. }));
     let found = problem(mesh(Positions::F32(corners()), &[[0, 1, 2], [0, 1, 4]]));
     assert_eq!(found, Problem::IndexOutOfRange { face: 1, corner: 2, index: 4, vertices: 4 });
-    let found = problem(mesh(Positions::F32(vec![]), &[]).unwrap().require_triangles());
-    assert_eq!(found, Problem::NoTriangles);
+    let found = problem(mesh(Positions::F32(vec![]), &[]).unwrap().require_elements());
+    assert_eq!(found, Problem::NoElements);
 }
 
 #[test]

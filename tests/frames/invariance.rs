@@ -96,6 +96,7 @@ fn named(body: &Body, contacts: &[Contact], vertex: impl Fn(u32) -> u32) -> BTre
     let mut all = BTreeMap::new();
     for c in contacts {
         let name = match c.kind {
+            Kind::Ev | Kind::Vv => unreachable!("all bodies are of faces"),
             Kind::Vf => (Kind::Vf, sorted(&[c.feature_a]), sorted(&body.faces()[c.feature_b as usize])),
             Kind::Ee => {
                 let mut ends = [c.feature_a, c.feature_b].map(|e| sorted(&edges[e as usize]));

@@ -61,16 +61,14 @@ fn fault(
     time: f64,
     told: &ContactGeometry,
 ) -> Option<String> {
-    let first = match kind {
-        Kind::Vf => 1,
-        Kind::Ee => 2,
-    };
+    let first = kind.vertices_of_a();
     let owner = |i: usize| bodies[usize::from(i >= first)];
     if told.owner != [0, 1, 2, 3].map(owner) || told.bodies != bodies {
         return Some(format!("owners {:?} of {:?}", told.owner, told.bodies));
     }
     let faces = |body: BodyId, face: u32| detector.scene().bodies()[body.index()].faces()[face as usize];
     let named = match kind {
+        Kind::Ev | Kind::Vv => unreachable!("all bodies are of faces"),
         Kind::Vf => told.vertices[0] == a && told.vertices[1..] == faces(bodies[1], b),
         Kind::Ee => told.vertices[0] > told.vertices[1] && told.vertices[2] > told.vertices[3],
     };

@@ -3,7 +3,7 @@
 use nearmiss::contacts::{GroupBy, Grouped, Kind};
 use nearmiss::scene::BodyId;
 use nearmiss::{Answer, Body, Continuous, Detector, Discrete, Near, Scene};
-use nearmiss_lab::scene::soup;
+use nearmiss_lab::scene::{soup, threads};
 use std::collections::BTreeMap;
 use support::engine;
 
@@ -15,7 +15,13 @@ fn scenes() -> Vec<Vec<Body>> {
     let moving = |n, seed| soup(n, seed, true).expect("a soup");
     let filter = nearmiss::scene::CollisionFilter::without_self_collision();
     let between = |n, seed| moving(n, seed).with_filter(filter);
-    vec![vec![moving(60, 7)], vec![between(40, 3), between(30, 4)], vec![moving(20, 5), between(20, 6)]]
+    let loose = threads(60, 8).expect("threads");
+    vec![
+        vec![loose],
+        vec![moving(60, 7)],
+        vec![between(40, 3), between(30, 4)],
+        vec![moving(20, 5), between(20, 6)],
+    ]
 }
 
 /// A feature of a row.
@@ -36,6 +42,12 @@ macro_rules! features {
                 }
                 Kind::Ee => {
                     all.extend([(GroupBy::Edge, a, row.feature_a), (GroupBy::Edge, b, row.feature_b)])
+                }
+                Kind::Ev => {
+                    all.extend([(GroupBy::Edge, a, row.feature_a), (GroupBy::Vertex, b, row.feature_b)])
+                }
+                Kind::Vv => {
+                    all.extend([(GroupBy::Vertex, a, row.feature_a), (GroupBy::Vertex, b, row.feature_b)])
                 }
             }
             all
@@ -75,7 +87,7 @@ fn groups_are_those_of_the_rows() {
                 let found = detector.grouped(&near, body, by).expect("groups");
                 assert_eq!(fault(by, body, &found, &of_near), None);
                 if by == GroupBy::Face {
-                    assert_eq!(found.len(), bodies[number].face_count());
+                    assert_eq!(found.len(), bodies[number].element_count());
                 }
             }
             let least = detector.least_by_vertex(&contacts, body).expect("times");
@@ -128,7 +140,7 @@ fn triangles_have_faces_and_corners() {
                 for side in (0..2).filter(|&side| pair.bodies[side] == body) {
                     let face = pair.triangles[side] as usize;
                     assert!(by_face.of(face).contains(&(row as u32)));
-                    let corners = bodies[number].faces()[face];
+                    let corners = bodies[number].elements()[face];
                     assert!(corners.iter().all(|&v| by_corner.of(v as usize).contains(&(row as u32))));
                 }
             }

@@ -2,6 +2,7 @@
 
 mod bodies;
 mod crossing;
+mod elements;
 mod exclusions;
 mod fans;
 mod geometry;

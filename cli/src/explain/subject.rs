@@ -209,12 +209,12 @@ fn vertex(body: &Body, i: u32) -> Result<Vec<u32>, Error> {
 }
 
 fn face(body: &Body, i: u32) -> Result<Vec<u32>, Error> {
-    let found = body.faces().get(i as usize).map(|face| face.to_vec());
-    found.ok_or_else(|| no_such(body, "face", i, body.face_count()))
+    let found = body.elements().get(i as usize).map(|face| face.to_vec());
+    found.ok_or_else(|| no_such(body, "face", i, body.element_count()))
 }
 
 fn edge(body: &Body, i: u32) -> Result<Vec<u32>, Error> {
-    let edges = Topology::new(body.faces(), body.vertex_count()).edges;
+    let edges = Topology::of(body).edges;
     let found = edges.get(i as usize).map(|ends| ends.to_vec());
     found.ok_or_else(|| no_such(body, "edge", i, edges.len()))
 }

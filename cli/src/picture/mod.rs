@@ -122,7 +122,7 @@ fn draw(
         | Rows::Earliest(_) => Geometry::default(),
     };
     let (bodies, paint) = (detector.scene().bodies(), Paint::of(args.detect.out.heat));
-    let triangles: usize = bodies.iter().map(|body| body.faces().len()).sum();
+    let triangles: usize = bodies.iter().map(|body| body.element_count()).sum();
     memory::require("the picture", draw::bytes(look.size, triangles))?;
     let painted = paint::paint(bodies, look.time, (found, geometry.contacts()), paint)?;
     let points = painted.mesh.positions().to_f64();

@@ -26,7 +26,7 @@ pub fn colours(bodies: &[Body], faces: &[[u32; 3]], vertices: usize) -> Vec<[u8;
     if let [_] = bodies {
         return parts(faces, vertices).into_iter().map(part).collect();
     }
-    let of = |(number, body): (usize, &Body)| std::iter::repeat_n(part(number), body.faces().len());
+    let of = |(number, body): (usize, &Body)| std::iter::repeat_n(part(number), body.element_count());
     bodies.iter().enumerate().flat_map(of).collect()
 }
 

@@ -125,7 +125,7 @@ impl PairGeometry {
     pub(crate) fn of_bodies(pair: &TrianglePair, bodies: &[Body]) -> Option<PairGeometry> {
         let corners = |side: usize| {
             let body = bodies.get(pair.bodies[side].index())?;
-            let face = body.faces().get(pair.triangles[side] as usize)?;
+            let face = body.elements().get(pair.triangles[side] as usize)?;
             let mut corners = [Vec3([0.0; 3]); 3];
             for (corner, &vertex) in corners.iter_mut().zip(face) {
                 let at = body.positions_t0().get_f64(vertex as usize)?;

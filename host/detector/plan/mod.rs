@@ -102,14 +102,14 @@ impl Plan {
     fn new(bodies: &[Body], (build, frame): (&Work, &Work), held: BTreeMap<&'static str, Count>) -> Plan {
         let vertices = bodies.iter().map(Body::vertex_count).sum();
         let mut counts = Bodies { vertices, ..Bodies::default() };
-        for body in bodies.iter().filter(|body| body.face_count() > 0) {
+        for body in bodies.iter().filter(|body| body.element_count() > 0) {
             let own = match body.kind() {
                 BodyKind::Fixed => &mut counts.fixed,
                 BodyKind::Rigid => &mut counts.rigid,
                 BodyKind::Deformable => &mut counts.deformable,
             };
             own[0] += 1;
-            own[1] += body.face_count();
+            own[1] += body.element_count();
         }
         let mut transfers: BTreeMap<&'static str, [Count; 2]> = BTreeMap::new();
         for (way, all) in [&frame.writes, &frame.reads].into_iter().enumerate() {

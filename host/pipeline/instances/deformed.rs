@@ -26,7 +26,7 @@ pub struct Deformed {
 
 /// Returns whether a body's mesh is refitted.
 pub fn deforms(body: &Body) -> bool {
-    body.kind() == BodyKind::Deformable && body.face_count() > 0
+    body.kind() == BodyKind::Deformable && body.element_count() > 0
 }
 
 /// The level of a node: 0 of a tile.

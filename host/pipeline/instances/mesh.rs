@@ -227,8 +227,8 @@ mod tests {
     fn every_triangle_is_below_every_node_above_it() {
         for (count, levels) in [(1, 0), (32, 0), (33, 1), (1_024, 1), (1_848, 2), (40_000, 3)] {
             let body = soup(count, 3, false);
-            let tiles = MeshTiles::new(body.faces(), body.positions_t0());
-            assert_eq!(check(body.faces(), &tiles), Ok(()), "{count} triangles");
+            let tiles = MeshTiles::new(body.elements(), body.positions_t0());
+            assert_eq!(check(body.elements(), &tiles), Ok(()), "{count} triangles");
             assert_eq!(tiles.levels, levels, "{count} triangles");
             let radius = tiles.record.radius;
             let far = |t: &MeshTriangle| {
@@ -257,9 +257,9 @@ mod tests {
             },
         ];
         for (i, fault) in faults.into_iter().enumerate() {
-            let mut tiles = MeshTiles::new(body.faces(), body.positions_t0());
+            let mut tiles = MeshTiles::new(body.elements(), body.positions_t0());
             fault(&mut tiles);
-            assert!(check(body.faces(), &tiles).is_err(), "fault {i}");
+            assert!(check(body.elements(), &tiles).is_err(), "fault {i}");
         }
     }
 }

@@ -50,9 +50,9 @@ pub struct Instances {
 /// of deformable bodies.
 fn shared(bodies: &[Body]) -> Vec<Option<usize>> {
     let mut known: HashMap<u64, Vec<usize>> = HashMap::new();
-    let same = |a: &Body, b: &Body| a.faces() == b.faces() && a.positions_t0() == b.positions_t0();
+    let same = |a: &Body, b: &Body| a.elements() == b.elements() && a.positions_t0() == b.positions_t0();
     let first = |(at, body): (usize, &Body)| {
-        (body.face_count() > 0).then(|| {
+        (body.element_count() > 0).then(|| {
             if deforms(body) {
                 return at;
             }
@@ -84,7 +84,7 @@ impl Instances {
         let (mut meshes, mut of_body): (Vec<MeshTiles>, HashMap<usize, u32>) = Default::default();
         for (at, body) in bodies.iter().enumerate().filter(|(at, _)| firsts[*at] == Some(*at)) {
             of_body.insert(at, meshes.len() as u32);
-            meshes.push(MeshTiles::new(body.faces(), body.positions_t0()));
+            meshes.push(MeshTiles::new(body.elements(), body.positions_t0()));
         }
         let all = Joined::of(meshes);
         let mesh = |at: usize| firsts[at].and_then(|first| of_body.get(&first)).map_or(0, |&mesh| mesh);

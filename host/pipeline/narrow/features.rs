@@ -1,6 +1,7 @@
 //! From triangle pairs to vertex/face and edge/edge candidates: topology, lists, the launch.
 
 use super::NarrowContext;
+use crate::contacts::Kind;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::counts::Counts;
@@ -35,9 +36,16 @@ impl Features {
     /// Device errors.
     pub fn new(device: &Device, layout: &Layout, [vf, ee]: [usize; 2]) -> Result<Self, Error> {
         let topology = &layout.features;
-        let facet = |((&corners, &edges), &owned)| Facet { corners, owned, edges, pad: 0 };
-        let facets: Vec<_> =
-            layout.faces.iter().zip(&topology.face_edges).zip(&topology.owners).map(facet).collect();
+        let facet = |(at, ((&corners, &edges), &owned)): (usize, ((_, _), &u32))| {
+            let kind = match layout.kind(at) {
+                Kind::Vf | Kind::Ee => 0,
+                Kind::Ev => Facet::EDGE,
+                Kind::Vv => Facet::POINT,
+            };
+            Facet { corners, owned: owned | kind, edges, pad: 0 }
+        };
+        let triangles = layout.faces.iter().zip(&topology.face_edges).zip(&topology.owners);
+        let facets: Vec<_> = triangles.enumerate().map(facet).collect();
         Ok(Features {
             edges: device.of(purpose::EDGES).upload(&topology.edges)?,
             facets: device.of(purpose::FACETS).upload(&facets)?,

@@ -160,7 +160,7 @@ impl Rungs {
     }
 
     /// Makes them the one rung of vertices whose thickness differs within a body: in f64, to the last
-    /// list. What approaches is still tested before it.
+    /// list. Pairs that approach are still sorted out before it.
     ///
     /// # Errors
     /// Device errors.

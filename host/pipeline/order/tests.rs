@@ -3,9 +3,10 @@
 use super::*;
 use crate::device::emulator::{Emulator, Mode, Order as Blocks};
 use crate::pipeline::counts::FrameCounters;
-use crate::pipeline::layout::Offsets;
+use crate::pipeline::layout::{FeatureTopology, Offsets};
 use crate::samples::words;
-use nearmiss_kernels::abi::Located;
+use nearmiss_kernels::abi::rows::code;
+use nearmiss_kernels::abi::{Feature, Located};
 use nearmiss_kernels::prim::inclusion::Verdict;
 use nearmiss_kernels::stage::order::RUN;
 use std::collections::BTreeSet;
@@ -31,6 +32,21 @@ fn layout(count: u32) -> Layout {
     let edges = [0, count, count, 2 * count];
     let at = |body: u32| Offsets { vertex: body * count, triangle: body * count, edge: edges[body as usize] };
     Layout { starts: (0..=BODIES).map(at).collect(), ..Layout::default() }
+}
+
+/// Returns the layout, with triangles that stand for edges and points. Edge and vertex numbers ascend,
+/// as triangles do.
+fn with_elements(layout: &Layout) -> Layout {
+    let end = *layout.starts.last().expect("an end");
+    let element = |triangle: u32| {
+        let kinds = [code::VERTEX_FACE, code::EDGE_VERTEX, code::VERTEX_VERTEX];
+        let kind = kinds[triangle as usize % 3];
+        let number = if kind == code::EDGE_VERTEX { triangle * end.edge / end.triangle } else { triangle };
+        Element { kind: kind.into(), number }
+    };
+    let features =
+        FeatureTopology { elements: (0..end.triangle).map(element).collect(), ..FeatureTopology::default() };
+    Layout { features: features.into(), ..layout.clone() }
 }
 
 /// Returns distinct names below `end`, unordered.
@@ -92,19 +108,39 @@ fn ordered<T: Ordered>(device: &Device, layout: &Layout, lists: [&[T]; 2], capac
     (rows, demand, contacts.expect("read"))
 }
 
-/// Returns the expected order: the first list, then the second, each by both features.
+/// The kind of a row, and both features.
+type Name = (u8, [u32; 2]);
+
+/// Returns the expected order: by kind, then by both features.
 fn wanted<T: Ordered>(layout: &Layout, lists: [&[T]; 2]) -> (Vec<T::Row>, Vec<T>) {
-    let mut all: Vec<(bool, T)> = [false, true]
+    let name = |is_second: bool, contact: &T| {
+        let [x, y] = contact.name();
+        let element = |y: u32| layout.features.elements.get(y as usize).filter(|_| T::OF_FEATURES);
+        match (is_second, element(y).map(|element| (element.kind as u8, element.number))) {
+            (true, _) => (code::EDGE_EDGE, [x, y]),
+            (false, None) => (code::VERTEX_FACE, [x, y]),
+            (false, Some((code::EDGE_VERTEX, edge))) => (code::EDGE_VERTEX, [edge, x]),
+            (false, Some((kind, number))) => (kind, [x, number]),
+        }
+    };
+    let mut all: Vec<(Name, T)> = [false, true]
         .into_iter()
         .zip(lists)
-        .flat_map(|(at, list)| list.iter().map(move |&c| (at, c)))
+        .flat_map(|(at, list)| list.iter().map(move |&contact| (name(at, &contact), contact)))
         .collect();
-    all.sort_by_key(|(list, contact)| (*list, contact.name()));
-    let row = |&(is_second, contact): &(bool, T)| {
-        let ([x, y], of) = (contact.name(), if is_second { T::SECOND } else { T::FIRST });
+    all.sort_by_key(|(name, _)| *name);
+    let row = |&(name, contact): &(Name, T)| {
+        let (kind, [x, y]) = name;
+        let of = match kind {
+            _ if !T::OF_FEATURES => [Feature::TRIANGLE; 2],
+            code::VERTEX_FACE => [Feature::VERTEX, Feature::TRIANGLE],
+            code::EDGE_EDGE => [Feature::EDGE; 2],
+            code::EDGE_VERTEX => [Feature::EDGE, Feature::VERTEX],
+            _ => [Feature::VERTEX; 2],
+        };
         let locate = |index: u32, of: Feature| layout.locate(index, |at| starts(at)[of.place() as usize]);
         let [(a, p), (b, q)] = [locate(x, of[0]), locate(y, of[1])];
-        contact.row(&Located { bodies: [a.0, b.0], features: [p, q], is_second, decided: 1 })
+        contact.row(&Located { bodies: [a.0, b.0], features: [p, q], kind, decided: 1 })
     };
     (all.iter().map(row).collect(), all.iter().map(|(_, contact)| *contact).collect())
 }
@@ -142,6 +178,11 @@ fn contacts_of_every_kind_come_in_canonical_order() {
         };
         let [vf, ee] = [7, 8].map(|seed| hits(seed, 300).iter().map(near).collect::<Vec<_>>());
         check(&device, &layout, [&vf, &ee], 600);
+        // A third of the triangles are edges of no face, a third points.
+        let of_elements = with_elements(&layout);
+        check(&device, &of_elements, [&hits(5, 900), &hits(6, 300)], 1_200);
+        check(&device, &of_elements, [&vf, &ee], 600);
+        check(&device, &of_elements, [&pairs, &[]], 500);
         // Features of one body are not located.
         let one = Layout { starts: layout.starts[..2].to_vec(), ..Layout::default() };
         let own: Vec<Hit> = hits(9, 900).into_iter().filter(|hit| hit.a.max(hit.b) < OF_A_BODY).collect();

@@ -41,7 +41,8 @@ fn the_device_orders_as_the_host_does() {
     let certified = Certified { tolerance: Some(1e-3), ..Certified::default() };
     let continuous = Continuous::by(certified).into();
     for (query, moving) in [(Query::discrete(), false), (continuous, true), (Query::near(0.02), false)] {
-        for bodies in [vec![soup(5, moving)], vec![soup(6, moving), soup(7, moving)]] {
+        let mixed = vec![samples::loose(300, 8, moving), soup(9, moving)];
+        for bodies in [vec![soup(5, moving)], vec![soup(6, moving), soup(7, moving)], mixed] {
             let [host, device] = [false, true].map(|device| answers(&bodies, query, device));
             assert!(host[0].len() > 20, "{query:?}: {}", host[0].len());
             for (host, device) in host.iter().zip(&device) {

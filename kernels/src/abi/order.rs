@@ -1,7 +1,8 @@
 //! Contacts into canonical order: their names, their rows, and the argument blocks.
 
 use super::rows::{ContactRow, NearRow, PairRow, code};
-use super::{Counters, Hit, NearHit, Output, Pair, Span};
+use super::{Counters, Element, Hit, NearHit, Output, Pair, Span};
+use crate::math::Real;
 use crate::prim::near::corner_weights;
 use bytemuck::{Pod, Zeroable};
 
@@ -18,6 +19,8 @@ impl Feature {
     pub const EDGE: Feature = Feature(2);
     /// How many there are.
     pub const COUNT: u32 = 3;
+    /// Those of a vertex and a face.
+    pub const OF_FACE: [Feature; 2] = [Feature::VERTEX, Feature::TRIANGLE];
 
     /// Its place among the starts of a body.
     #[inline(always)]
@@ -33,20 +36,44 @@ pub struct Located {
     pub bodies: [u32; 2],
     /// Both indices.
     pub features: [u32; 2],
-    /// Whether it is in the second list.
-    pub is_second: bool,
+    /// Its kind; a number of rows of features. 0 for triangle pairs.
+    pub kind: u8,
     /// Status of a contact that is no undecided one.
     pub decided: u32,
+}
+
+/// The nearest points of a row of a kind, from those of a vertex and a triangle or of two edges: the
+/// triangle of an edge has its second end twice.
+#[inline(always)]
+pub fn nearest_of(kind: u8, at: [f64; 2]) -> [f64; 2] {
+    match kind {
+        code::EDGE_VERTEX => [(at[0] + at[1]).lesser(1.0), 0.0],
+        code::VERTEX_VERTEX => [0.0; 2],
+        _ => at,
+    }
+}
+
+/// The weights of the four vertices of a row of a kind in its nearest points.
+#[inline(always)]
+pub fn weights_of(kind: u8, at: [f64; 2]) -> [f64; 4] {
+    match kind {
+        code::VERTEX_FACE => {
+            let [x, y, z] = corner_weights(at);
+            [1.0, x, y, z]
+        }
+        code::EDGE_EDGE => [1.0 - at[0], at[0], 1.0 - at[1], at[1]],
+        code::EDGE_VERTEX => [1.0 - at[0], at[0], 1.0, 0.0],
+        _ => [1.0, 1.0, 0.0, 0.0],
+    }
 }
 
 /// A contact that can be put into order.
 pub trait Named: Pod {
     /// Its row in the answer.
     type Row: Pod;
-    /// Its features in the first list.
-    const FIRST: [Feature; 2];
-    /// Its features in the second list.
-    const SECOND: [Feature; 2];
+    /// Whether lists are of vertices and faces, and of edges. If not, there is one list, of triangle
+    /// pairs.
+    const OF_FEATURES: bool;
     /// The two features, numbered through all bodies.
     fn name(&self) -> [u32; 2];
     /// Its row.
@@ -55,8 +82,7 @@ pub trait Named: Pod {
 
 impl Named for Pair {
     type Row = PairRow;
-    const FIRST: [Feature; 2] = [Feature::TRIANGLE; 2];
-    const SECOND: [Feature; 2] = [Feature::TRIANGLE; 2];
+    const OF_FEATURES: bool = false;
     #[inline(always)]
     fn name(&self) -> [u32; 2] {
         [self.a, self.b]
@@ -69,8 +95,7 @@ impl Named for Pair {
 
 impl Named for Hit {
     type Row = ContactRow;
-    const FIRST: [Feature; 2] = [Feature::VERTEX, Feature::TRIANGLE];
-    const SECOND: [Feature; 2] = [Feature::EDGE; 2];
+    const OF_FEATURES: bool = true;
     #[inline(always)]
     fn name(&self) -> [u32; 2] {
         [self.a, self.b]
@@ -82,7 +107,7 @@ impl Named for Hit {
             features: at.features,
             toi: self.verdict.toi,
             toi_upper: self.verdict.toi_upper,
-            kind: if at.is_second { code::EDGE_EDGE } else { code::VERTEX_FACE },
+            kind: at.kind,
             status: match (self.verdict.is_contact(), at.decided) {
                 (false, _) => code::UNDECIDED,
                 (true, 0) => code::UNVERIFIED,
@@ -95,22 +120,22 @@ impl Named for Hit {
 
 impl Named for NearHit {
     type Row = NearRow;
-    const FIRST: [Feature; 2] = Hit::FIRST;
-    const SECOND: [Feature; 2] = Hit::SECOND;
+    const OF_FEATURES: bool = true;
     #[inline(always)]
     fn name(&self) -> [u32; 2] {
         [self.a, self.b]
     }
     #[inline(always)]
     fn row(&self, at: &Located) -> NearRow {
-        // Corners or ends with a weight. The vertex of a face is one more.
-        let [s, t] = self.at;
-        let [x, y, z] = corner_weights(self.at);
-        let of_face = 1 + (x > 0.0) as u32 + (y > 0.0) as u32 + (z > 0.0) as u32;
-        let of_edges = (1.0 - s > 0.0) as u32 + (s > 0.0) as u32 + (1.0 - t > 0.0) as u32 + (t > 0.0) as u32;
-        let closest = match (at.is_second, if at.is_second { of_edges } else { of_face }) {
-            (true, 4) => code::NEAR_EDGES,
-            (false, 4) => code::NEAR_FACE,
+        let nearest = nearest_of(at.kind, self.at);
+        // Corners or ends with a weight. The vertex of a face, and a point, have one.
+        let mut parts = 0;
+        for weight in weights_of(at.kind, nearest) {
+            parts += (weight > 0.0) as u32;
+        }
+        let closest = match (at.kind, parts) {
+            (code::EDGE_EDGE, 4) => code::NEAR_EDGES,
+            (code::VERTEX_FACE, 4) => code::NEAR_FACE,
             (_, 3) => code::NEAR_EDGE,
             _ => code::NEAR_VERTEX,
         };
@@ -118,8 +143,8 @@ impl Named for NearHit {
             bodies: at.bodies,
             features: at.features,
             squared_distance: self.squared,
-            at: self.at,
-            kind: if at.is_second { code::EDGE_EDGE } else { code::VERTEX_FACE },
+            at: nearest,
+            kind: at.kind,
             closest,
             pad: [0; 6],
         }
@@ -164,8 +189,12 @@ arguments! {
         merged: Span<u64>,
         /// First vertex, triangle and edge of each body, and the totals; not read for one body.
         bodies: Span<u32>,
-        /// The bin of the first edge.
-        second_bin: u32,
+        /// What triangles stand for; empty if all are faces.
+        elements: Span<Element>,
+        /// Number of vertices, or of triangles: the bin of the first edge.
+        vertices: u32,
+        /// Number of edges.
+        edges: u32,
         /// Keys of a bin that are in order already, from the first of the bin on: log2 of their
         /// number.
         run: u32,
@@ -173,5 +202,7 @@ arguments! {
         ways: u32,
         /// Status of a contact that is no undecided one.
         decided: u32,
+        /// Zero.
+        pad: u32,
     }
 }

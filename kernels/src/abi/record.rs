@@ -66,6 +66,20 @@ impl<V> Node<V> {
     }
 }
 
+/// What a triangle of a scene stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C, align(8))]
+pub struct Element {
+    /// [`code::VERTEX_FACE`](super::rows::code::VERTEX_FACE) for a face,
+    /// [`code::EDGE_VERTEX`](super::rows::code::EDGE_VERTEX) for an edge of no face,
+    /// [`code::VERTEX_VERTEX`](super::rows::code::VERTEX_VERTEX) for a point: the kind of a row of it
+    /// and a vertex.
+    pub kind: u32,
+    /// The triangle itself, the edge or the vertex, numbered through all bodies.
+    pub number: u32,
+}
+const _: () = assert!(size_of::<Element>() == 8);
+
 /// Two indices: a triangle pair (discrete candidates and contacts), a vertex and a face, or two
 /// edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Pod, Zeroable)]
@@ -95,7 +109,8 @@ const _: () = assert!(size_of::<Begun>() == 16);
 pub struct Facet {
     /// Its vertices.
     pub corners: [u32; 3],
-    /// Which vertices (bits 0 to 2) and edges (bits 3 to 5) it stands for.
+    /// Which vertices (bits 0 to 2) and edges (bits 3 to 5) it stands for; and whether it is an edge of
+    /// no face ([`Facet::EDGE`]) or a point ([`Facet::POINT`]).
     pub owned: u32,
     /// Its edges; edge k joins corners k and k + 1.
     pub edges: [u32; 3],
@@ -103,6 +118,13 @@ pub struct Facet {
     pub pad: u32,
 }
 const _: () = assert!(size_of::<Facet>() == 32);
+
+impl Facet {
+    /// Bit of [`Facet::owned`] for an edge of no face: its corners are a, b and b.
+    pub const EDGE: u32 = 1 << 6;
+    /// Bit of [`Facet::owned`] for a point: its corners are one vertex.
+    pub const POINT: u32 = 1 << 7;
+}
 
 /// A pair of nodes still to be traversed: a query's leaf and the two children of a node.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]

@@ -9,6 +9,10 @@ pub mod code {
     pub const VERTEX_FACE: u8 = 0;
     /// Two edges.
     pub const EDGE_EDGE: u8 = 1;
+    /// An edge of no face, and a point.
+    pub const EDGE_VERTEX: u8 = 2;
+    /// Two points.
+    pub const VERTEX_VERTEX: u8 = 3;
     /// A contact of a solver that can be wrong.
     pub const UNVERIFIED: u8 = 0;
     /// A proven contact.
@@ -48,7 +52,7 @@ pub struct ContactRow {
     pub toi: f64,
     /// The first contact is not after.
     pub toi_upper: f64,
-    /// [`code::VERTEX_FACE`] or [`code::EDGE_EDGE`].
+    /// [`code::VERTEX_FACE`] to [`code::VERTEX_VERTEX`].
     pub kind: u8,
     /// [`code::UNVERIFIED`], [`code::CERTIFIED`] or [`code::UNDECIDED`].
     pub status: u8,
@@ -69,7 +73,7 @@ pub struct NearRow {
     pub squared_distance: f64,
     /// The nearest points, see [`crate::prim::near::Near::at`].
     pub at: [f64; 2],
-    /// [`code::VERTEX_FACE`] or [`code::EDGE_EDGE`].
+    /// [`code::VERTEX_FACE`] to [`code::VERTEX_VERTEX`].
     pub kind: u8,
     /// The nearest parts: [`code::NEAR_FACE`] to [`code::NEAR_EDGES`].
     pub closest: u8,

@@ -160,6 +160,11 @@ impl Scene {
                 let [p, q, r] = self.body.faces()[b as usize];
                 (Features::VertexFace, [a, p, q, r])
             }
+            Kind::Ev => {
+                let [p, q] = self.edges[a as usize];
+                (Features::VertexFace, [b, p, q, q])
+            }
+            Kind::Vv => (Features::VertexFace, [a, b, b, b]),
         };
         Case {
             features,

@@ -65,7 +65,7 @@ pub fn animation(name: &str, triangles: usize, seed: u64) -> Result<Animation, E
 /// frame is computed yet.
 ///
 /// # Errors
-/// [`Problem::UnknownScene`] with the known names, [`Problem::NoTriangles`] for 0,
+/// [`Problem::UnknownScene`] with the known names, [`Problem::NoElements`] for 0,
 /// [`Problem::TooMany`] above [`super::MAX_TRIANGLES`], each as [`Error::Input`];
 /// [`Error::InvalidArgument`] for contact in `n-body`, which has no cloth.
 pub fn animation_with(name: &str, options: Options) -> Result<Animation, Error> {
@@ -75,7 +75,7 @@ pub fn animation_with(name: &str, options: Options) -> Result<Animation, Error> 
         return Err(input(Problem::UnknownScene { known: ANIMATIONS.join(", ") }));
     }
     if triangles == 0 {
-        return Err(input(Problem::NoTriangles));
+        return Err(input(Problem::NoElements));
     }
     room(name, triangles as u64)?;
     memory::require(&format!("the cloth or the balls of {name}"), triangles as u64 * OF_A_TRIANGLE)?;

@@ -31,7 +31,7 @@ pub use bodies::{Bodies, Move};
 pub use draped::draped;
 pub use known::{grid, grid_pairs, identical, line, single};
 pub use rng::Rng;
-pub use soup::soup;
+pub use soup::{soup, threads};
 
 use nearmiss::Error;
 use nearmiss::memory;
@@ -83,12 +83,12 @@ pub const MAX_TRIANGLES: u64 = 1 << 27;
 /// computed first.
 ///
 /// # Errors
-/// [`Problem::UnknownScene`] with the known names, [`Problem::NoTriangles`] for 0,
+/// [`Problem::UnknownScene`] with the known names, [`Problem::NoElements`] for 0,
 /// [`Problem::TooMany`] above [`MAX_TRIANGLES`]; each as [`Error::Input`] with the scene's name for
 /// a file.
 pub fn scene(name: &str, triangles: usize, seed: u64) -> Result<Body, Error> {
     if triangles == 0 && NAMES.contains(&name) {
-        return Err(Error::Input { file: name.into(), problem: Problem::NoTriangles });
+        return Err(Error::Input { file: name.into(), problem: Problem::NoElements });
     }
     match name {
         _ if ANIMATIONS.contains(&name) => {

@@ -2,7 +2,7 @@
 
 use super::{Builder, Rng, cube_root_up, room};
 use nearmiss::Error;
-use nearmiss::mesh::Body;
+use nearmiss::mesh::{Body, Mesh, Positions};
 
 /// Makes exactly `n` random triangles in the unit cube, no two with a common vertex. They are
 /// still, or each corner moves on its own. Their size decreases with the cube root of `n`, so that
@@ -25,6 +25,31 @@ pub fn soup(n: usize, seed: u64, moving: bool) -> Result<Body, Error> {
         scene.faces.push(face);
     }
     scene.body(name)
+}
+
+/// The moving soup, of which one triangle in three stays. Of the others one in two is a thread of two
+/// edges, one in two is three points.
+///
+/// # Errors
+/// As [`soup`].
+pub fn threads(n: usize, seed: u64) -> Result<Body, Error> {
+    let loose = |mesh: Mesh| {
+        let (mut faces, mut edges, mut points) = (Vec::new(), Vec::new(), Vec::new());
+        for (at, &[a, b, c]) in mesh.faces().iter().enumerate() {
+            match at % 3 {
+                0 => faces.push([a, b, c]),
+                1 => edges.extend([[a, b], [b, c]]),
+                _ => points.extend([a, b, c]),
+            }
+        }
+        let (name, positions, _) = mesh.into_parts();
+        Mesh::new(name, positions, faces)?.with_edges(edges)?.with_points(points)
+    };
+    let mut ends = soup(n, seed, true)?.frames().into_iter().map(loose);
+    match (ends.next(), ends.next()) {
+        (Some(t0), Some(t1)) => Body::moving(t0?, t1?),
+        _ => Ok(Body::deformable(Mesh::new("threads", Positions::F32(Vec::new()), Vec::new())?)),
+    }
 }
 
 pub(super) fn add(p: [f64; 3], q: [f64; 3]) -> [f64; 3] {

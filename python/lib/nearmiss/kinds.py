@@ -10,6 +10,10 @@ class Kind(IntEnum):
     """Feature a is a vertex, feature b a face."""
     EDGE_EDGE = 1
     """Both features are edges."""
+    EDGE_VERTEX = 2
+    """Feature a is an edge of no face, feature b a vertex of no face."""
+    VERTEX_VERTEX = 3
+    """Both features are points: vertices of no face and no edge."""
 
 
 class PairKind(IntEnum):

@@ -268,6 +268,7 @@ pub fn of(bodies: &[Body], contact: &Contact) -> (Features, Ends, [f64; 4]) {
         nearmiss::Thickness::Each(radii) => radii[v as usize],
     };
     let (features, all) = match contact.kind {
+        Kind::Ev | Kind::Vv => unreachable!("all bodies are of faces"),
         Kind::Vf => {
             let [x, y, z] = other.faces()[contact.feature_b as usize];
             (Features::VertexFace, [(one, contact.feature_a), (other, x), (other, y), (other, z)])

@@ -103,6 +103,8 @@ impl Law {
         match kind {
             Kind::Vf => [self.vertex(a, first), self.face(b, second)],
             Kind::Ee => [self.edge(a, first), self.edge(b, second)],
+            Kind::Ev => [self.edge(a, first), self.vertex(b, second)],
+            Kind::Vv => [self.vertex(a, first), self.vertex(b, second)],
         }
     }
 

@@ -153,7 +153,7 @@ mod tests {
         };
         let padded = |points: &[Vec3<f32>]| points.iter().map(|&p| p.into()).collect::<Vec<Point<f32>>>();
         let mut points = device.upload(&padded(&at(1.0)))?;
-        let faces = device.upload(body.faces())?;
+        let faces = device.upload(body.elements())?;
         let frames = Positions { still: points.span(), moving: Span::EMPTY, turns: Span::EMPTY };
         let layout = Layout::single(2_000);
         let mut tree = Tree::new(&device, &TreeSpec::alone(&layout, refit, V::GROUP > 0))?;
@@ -167,13 +167,17 @@ mod tests {
         refit(&tree)?;
         volumes.check(
             &tree,
-            body.faces(),
+            body.elements(),
             &crate::pipeline::broad::Checked::new(vec![at(1.0)], Vec::new()),
         )?;
         points.write(&padded(&at(3.0)))?;
         fault(&mut tree);
         refit(&tree)?;
-        volumes.check(&tree, body.faces(), &crate::pipeline::broad::Checked::new(vec![at(3.0)], Vec::new()))
+        volumes.check(
+            &tree,
+            body.elements(),
+            &crate::pipeline::broad::Checked::new(vec![at(3.0)], Vec::new()),
+        )
     }
 
     fn plan(tree: &mut Tree) -> &mut Plan {

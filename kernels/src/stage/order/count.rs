@@ -23,8 +23,8 @@ pub fn count<T: Named, B: Block>(block: &mut B, args: &OrderArgs<T>) {
             lane.fetch_add(args.rows.count(), 0, contacts.all);
         }
         while number < contacts.count {
-            let [feature, _] = contacts.get(lane, args, number).name();
-            let bin = contacts.bin(args, number, feature);
+            let contact = contacts.get(lane, args, number);
+            let bin = contacts.named(lane, args, number, &contact).bin;
             let half = 32 * (bin % 2);
             let before = lane.fetch_add(args.bins.counts, bin / 2, 1 << half);
             lane.write(args.slots, number, (before >> half) as u32);

@@ -18,7 +18,8 @@ pub mod count;
 pub mod rank;
 pub mod starts;
 
-use crate::abi::{Named, OrderArgs, Output};
+use crate::abi::rows::code;
+use crate::abi::{Element, Feature, Named, OrderArgs, Output};
 use crate::exec::{Block, Lane};
 use bytemuck::Pod;
 
@@ -46,22 +47,55 @@ impl Contacts {
         Contacts { first, all, count: all.min(args.slots.len()) as u32 }
     }
 
-    fn is_second(&self, number: u32) -> bool {
-        number >= self.first
-    }
-
     fn get<T: Named, L: Lane>(&self, lane: &L, args: &OrderArgs<T>, number: u32) -> T {
-        if self.is_second(number) {
+        if number >= self.first {
             args.second.get(lane, number - self.first)
         } else {
             args.first.get(lane, number)
         }
     }
 
-    /// The bin of a contact with this first feature.
-    fn bin<T: Named>(&self, args: &OrderArgs<T>, number: u32, feature: u32) -> u32 {
-        if self.is_second(number) { args.second_bin + feature } else { feature }
+    /// How the contact of a number is named in its row.
+    #[inline(always)]
+    fn named<T: Named, L: Lane>(&self, lane: &L, args: &OrderArgs<T>, number: u32, contact: &T) -> Name {
+        let [x, y] = contact.name();
+        if !T::OF_FEATURES {
+            return Name { kind: 0, of: [Feature::TRIANGLE; 2], features: [x, y], bin: x };
+        }
+        if number >= self.first {
+            let bin = args.vertices + x;
+            return Name { kind: code::EDGE_EDGE, of: [Feature::EDGE; 2], features: [x, y], bin };
+        }
+        if args.elements.is_empty() {
+            return Name { kind: code::VERTEX_FACE, of: Feature::OF_FACE, features: [x, y], bin: x };
+        }
+        let Element { kind, number } = lane.read(args.elements, y);
+        let kind = kind as u8;
+        let further = args.vertices + args.edges;
+        match kind {
+            code::EDGE_VERTEX => {
+                let of = [Feature::EDGE, Feature::VERTEX];
+                Name { kind, of, features: [number, x], bin: further + number }
+            }
+            code::VERTEX_VERTEX => {
+                let of = [Feature::VERTEX; 2];
+                Name { kind, of, features: [x, number], bin: further + args.edges + x }
+            }
+            _ => Name { kind, of: Feature::OF_FACE, features: [x, number], bin: x },
+        }
     }
+}
+
+/// The name of a contact in its row.
+struct Name {
+    /// A number of rows of features; 0 for triangle pairs.
+    kind: u8,
+    /// What its features are.
+    of: [Feature; 2],
+    /// Both features, numbered through all bodies.
+    features: [u32; 2],
+    /// The bin of its kind and first feature.
+    bin: u32,
 }
 
 fn listed<T: Pod, B: Block>(block: &B, list: &Output<T>) -> u32 {

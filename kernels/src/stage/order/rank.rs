@@ -3,10 +3,10 @@
 //! Launch   `place`, `merge` for each level of long bins, `rank`: a lane a contact; a grid of any
 //!          size strides.
 //! Reads    contacts, their slots, starts of bins, starts of bodies.
-//! Writes   a key of each contact in its bin; keys of longer runs; one list of all rows, by list,
+//! Writes   a key of each contact in its bin; keys of longer runs; one list of all rows, by kind,
 //!          first and second feature, with bodies and the indices in these.
 //! Before   starts are complete; `rank`: no bin has more contacts than one run of its keys becomes.
-//! After    rows = first ∪ second, ascending by (list, x, y). Names are unique in a list, so the
+//! After    rows = first ∪ second, ascending by (kind, x, y). Names are unique in a kind, so the
 //!          order is unique.
 //! Room     rows and keys: counted past the end, grown, run again. Levels of `merge`: as many as
 //!          the longest bin needs, by its count.
@@ -14,7 +14,7 @@
 //!          bin, a contact in, a row out. A merge: a binary search in each other run, of
 //!          [16](super::WAYS_BITS) at most. So a bin of n costs n · log n, not n².
 
-use super::Contacts;
+use super::{Contacts, Name};
 use crate::abi::{Feature, Located, Named, OrderArgs, Span};
 use crate::exec::{Block, Lane};
 
@@ -25,10 +25,11 @@ pub fn place<T: Named, B: Block>(block: &mut B, args: &OrderArgs<T>) {
     block.phase(|lane| {
         let mut number = lane.global();
         while number < contacts.count {
-            let [x, y] = contacts.get(lane, args, number).name();
-            let start = lane.read(args.bins.starts, contacts.bin(args, number, x));
+            let contact = contacts.get(lane, args, number);
+            let Name { bin, features, .. } = contacts.named(lane, args, number, &contact);
+            let start = lane.read(args.bins.starts, bin);
             let slot = lane.read(args.slots, number);
-            lane.write(args.keys, start + slot, (y as u64) << 32 | number as u64);
+            lane.write(args.keys, start + slot, (features[1] as u64) << 32 | number as u64);
             number = number.saturating_add(stride);
         }
     });
@@ -42,8 +43,8 @@ pub fn merge<T: Named, B: Block>(block: &mut B, args: &OrderArgs<T>) {
         let mut at = lane.global();
         while at < contacts.count {
             let key = lane.read(args.keys, at);
-            let [feature, _] = contacts.get(lane, args, key as u32).name();
-            let bin = contacts.bin(args, key as u32, feature);
+            let contact = contacts.get(lane, args, key as u32);
+            let bin = contacts.named(lane, args, key as u32, &contact).bin;
             lane.write(args.merged, ranked(lane, args, bin, at, key), key);
             at = at.saturating_add(stride);
         }
@@ -60,13 +61,11 @@ pub fn rank<T: Named, B: Block>(block: &mut B, args: &OrderArgs<T>) {
             let key = lane.read(args.keys, at);
             let number = key as u32;
             let contact = contacts.get(lane, args, number);
-            let [x, y] = contact.name();
-            let place = ranked(lane, args, contacts.bin(args, number, x), at, key);
-            let is_second = contacts.is_second(number);
-            let [of_x, of_y] = if is_second { T::SECOND } else { T::FIRST };
-            let [a, p] = located(lane, args.bodies, of_x, x);
-            let [b, q] = located(lane, args.bodies, of_y, y);
-            let located = Located { bodies: [a, b], features: [p, q], is_second, decided: args.decided };
+            let Name { kind, of, features: [x, y], bin } = contacts.named(lane, args, number, &contact);
+            let place = ranked(lane, args, bin, at, key);
+            let [a, p] = located(lane, args.bodies, of[0], x);
+            let [b, q] = located(lane, args.bodies, of[1], y);
+            let located = Located { bodies: [a, b], features: [p, q], kind, decided: args.decided };
             lane.write(args.rows.items(), place, contact.row(&located));
             args.contacts.put(lane, place as u64, contact);
             at = at.saturating_add(stride);

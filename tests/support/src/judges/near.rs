@@ -1,6 +1,6 @@
 //! The judge of a near query's answer, by the exact one.
 
-use nearmiss::contacts::{Closest, Kind, NearPair};
+use nearmiss::contacts::{Closest, NearPair};
 use nearmiss::mesh::Body;
 use nearmiss_kernels::math::tolerance::{DISTANCE_ERROR, DISTANCE_LISTED, U64};
 use nearmiss_kernels::math::{Real, Vec3};
@@ -112,11 +112,7 @@ impl Truth {
     /// The number of listed pairs beyond the distance; the error is the fault of the answer.
     pub fn fault(&self, found: &[NearPair]) -> Result<usize, String> {
         let row = |pair: &NearPair| {
-            let kind = match pair.kind {
-                Kind::Vf => "vf",
-                Kind::Ee => "ee",
-            };
-            (kind, pair.bodies.map(|body| body.index()), [pair.feature_a, pair.feature_b])
+            (pair.kind.name(), pair.bodies.map(|body| body.index()), [pair.feature_a, pair.feature_b])
         };
         let key = |pair: &NearPair| {
             let [of_a, of_b] = pair.bodies;
