@@ -100,8 +100,13 @@ enum NearmissKind
  {
     // Feature a is a vertex, feature b a face.
     NEARMISS_VF = 0,
-    // Both features are edges, numbered in ascending order of (larger vertex, smaller vertex).
+    // Both features are edges, numbered in ascending order of (larger vertex, smaller vertex), or as
+    // given.
     NEARMISS_EE = 1,
+    // Feature a is an edge of no triangle, feature b a vertex of no triangle.
+    NEARMISS_EV = 2,
+    // Both features are points: vertices of no triangle and no edge.
+    NEARMISS_VV = 3,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -410,15 +415,15 @@ typedef struct {
 
 // Two features that collide within the step: they touch, or come within `min_separation`.
 typedef struct {
-    // Vertex and face, or two edges.
+    // The kind of both features.
     NearmissKind kind;
     // Certainty.
     NearmissStatus status;
     // The bodies of feature a and of feature b.
     uint32_t bodies[2];
-    // Index of the vertex, or of the first edge, in its body.
+    // Index of the first feature of the kind in its body.
     uint32_t feature_a;
-    // Index of the face, or of the second edge, in its body.
+    // Index of the second feature in its body.
     uint32_t feature_b;
     // Time of contact, in [0, 1] of the step. Certified: never later than the first contact.
     double toi;
@@ -428,15 +433,15 @@ typedef struct {
 
 // Two features within a distance of each other, and their nearest points.
 typedef struct {
-    // Vertex and face, or two edges.
+    // The kind of both features.
     NearmissKind kind;
     // The nearest parts of the two.
     NearmissClosest closest;
     // The bodies of feature a and of feature b.
     uint32_t bodies[2];
-    // Index of the vertex, or of the first edge, in its body.
+    // Index of the first feature of the kind in its body.
     uint32_t feature_a;
-    // Index of the face, or of the second edge, in its body.
+    // Index of the second feature in its body.
     uint32_t feature_b;
     // Squared distance. Its root errs by at most 192 half ulps of the extent of the features. A
     // square below 2^-1022 has fewer digits; one below 2^-1075 is 0, though the features may be
@@ -500,7 +505,7 @@ typedef struct {
     NearmissRows positions;
     // Three indices of vertices a triangle, without gaps.
     const uint32_t *triangles;
-    // Number of triangles, at least 1.
+    // Number of triangles. A body needs a triangle, an edge or a point.
     size_t triangle_count;
     // A `NearmissBodyKind`.
     uint32_t kind;
@@ -523,6 +528,15 @@ typedef struct {
     const double *radii;
     // How many radii there are: 0 for none, 1 for all vertices, or one for each.
     size_t radius_count;
+    // Two indices of vertices an edge, without gaps. Edges of no triangle take part by themselves.
+    // They also number the edges of answers: those of triangles that are not listed come behind.
+    const uint32_t *edges;
+    // Number of edges.
+    size_t edge_count;
+    // Vertices of no triangle and no edge that take part by themselves.
+    const uint32_t *points;
+    // Number of points.
+    size_t point_count;
 } NearmissBody;
 
 // Pairs of features of a body that are not tested against each other, and faces that take no

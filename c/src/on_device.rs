@@ -15,10 +15,10 @@ use std::mem::{MaybeUninit, offset_of};
 pub enum NearmissEntries {
     /// `NearmissDevicePair`: two triangles.
     NEARMISS_TRIANGLE_PAIRS = 0,
-    /// `NearmissDeviceHit`: a vertex and a face, or two edges, and their times of contact. An
+    /// `NearmissDeviceHit`: a vertex and a triangle, or two edges, and their times of contact. An
     /// earliest query has none.
     NEARMISS_CONTACTS = 1,
-    /// `NearmissDeviceNearHit`: a vertex and a face, or two edges, and their nearest points.
+    /// `NearmissDeviceNearHit`: a vertex and a triangle, or two edges, and their nearest points.
     NEARMISS_NEAR_PAIRS = 2,
     /// `NearmissDeviceNearest`: two triangles, their distance and nearest points.
     NEARMISS_NEAREST = 3,

@@ -11,8 +11,7 @@ use nearmiss::scene::BodyId;
 pub enum NearmissKind {
     /// Feature a is a vertex, feature b a face.
     NEARMISS_VF = 0,
-    /// Both features are edges, numbered in ascending order of (larger vertex, smaller vertex), or as
-    /// given.
+    /// Both features are edges. Numbers ascend by (larger vertex, smaller vertex), or are as given.
     NEARMISS_EE = 1,
     /// Feature a is an edge of no triangle, feature b a vertex of no triangle.
     NEARMISS_EV = 2,

@@ -154,7 +154,10 @@ impl Truths {
 fn questions(bodies: &[Body]) -> impl Iterator<Item = (String, Query)> {
     let hundredth = 0.01 / Certified::TOLERANCE * of_edges(bodies);
     let apart = Continuous::by(Certified { min_separation: hundredth, ..Certified::default() });
-    let every = Query::every().map(|query| (query, false));
+    // The paper's test of triangles may find lines that are apart: more of them with more candidates.
+    let has_area = bodies.iter().all(|body| body.element_count() == body.face_count());
+    let every = Query::every().filter(move |query| has_area || query.solver() != Solver::Moller);
+    let every = every.map(|query| (query, false));
     every.chain([(apart.into(), true)]).map(move |(query, is_apart)| {
         // About a tenth of the mean edge, which a scene of points has not.
         let query = match query {

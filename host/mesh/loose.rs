@@ -30,7 +30,7 @@ impl Loose {
     }
 }
 
-/// What takes part in a scene: faces, then edges of no face as `[a, b, b]`, then points of no face
+/// All that takes part in a scene: faces, then edges of no face as `[a, b, b]`, then points of no face
 /// and no edge as `[p, p, p]`. In an edge the larger index comes first.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Elements {

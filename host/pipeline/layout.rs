@@ -64,7 +64,7 @@ pub struct FeatureTopology {
     pub face_edges: Vec<[u32; 3]>,
     /// Features that each triangle owns.
     pub owners: Vec<u32>,
-    /// What each triangle stands for; empty if all are faces.
+    /// The meaning of each triangle; empty if all are faces.
     pub elements: Vec<Element>,
 }
 

@@ -64,7 +64,7 @@ pub struct Order<T: Ordered> {
     keys: [Buffer<u64>; 2],
     /// First features of each body; none for one body.
     bodies: Buffer<u32>,
-    /// What triangles stand for; empty if all are faces.
+    /// The meaning of each triangle; empty if all are faces.
     elements: Buffer<Element>,
     /// Number of vertices, or of triangles; and of edges.
     first_features: [u32; 2],

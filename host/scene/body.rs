@@ -240,7 +240,7 @@ impl Body {
         &self.loose.points
     }
 
-    /// What takes part, in the numbering of discrete queries and distances: the triangles; then
+    /// All that takes part, in the numbering of discrete queries and distances: the triangles; then
     /// edges of no face as `[a, b, b]`, in the order given; then points as `[p, p, p]`. Each once.
     pub fn elements(&self) -> &[[u32; 3]] {
         &self.elements.corners
@@ -251,7 +251,7 @@ impl Body {
         self.elements.corners.len()
     }
 
-    /// What an element is.
+    /// Kind of an element, as that of its rows with a vertex.
     pub(crate) fn element_kind(&self, element: usize) -> Kind {
         let Elements { faces, edges, .. } = self.elements;
         match element {

@@ -17,8 +17,8 @@ impl Detector {
     ///
     /// - `answer`: Contacts, NearPairs or TrianglePairs of this detector.
     /// - `body`: its number or name.
-    /// - `by`: "vertex" and "face" of vertex/face rows, "edge" of edge/edge rows. "face" is also each
-    ///   triangle of a pair. "corner" is each vertex that takes part in a row.
+    /// - `by`: "vertex", "edge" and "face" are the features of rows. "face" is also each triangle of a
+    ///   pair. "corner" is each vertex that takes part in a row.
     ///
     /// Returns two uint32 arrays, starts and rows: the rows of feature i are
     /// rows[starts[i]:starts[i + 1]], ascending. Raises InvalidArgumentError for other answers.

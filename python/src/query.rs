@@ -276,7 +276,7 @@ in_motion! {
 /// - `distance`: a length above 0, in the unit of the vertices. No pair within it is missed. It may be
 ///   0 if a body has a thickness.
 ///
-/// A pair is a vertex and a face, or two edges. Features with a common vertex are left out.
+/// A pair is two features: see `Kind`. Features with a common vertex are left out.
 #[pyclass(module = "nearmiss", frozen, extends = Query)]
 pub struct Near;
 

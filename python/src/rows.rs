@@ -90,7 +90,7 @@ impl TrianglePairs {
 
 /// Answer of Continuous: features that meet within the step, a row a pair.
 ///
-/// A row is a vertex and a face, or two edges. Rows ascend by `kind`, then by feature a and its
+/// A row is two features: see `Kind`. Rows ascend by `kind`, then by feature a and its
 /// body, then by feature b. An edge that already passes through a face at the start has no row: see
 /// `starts_crossing`.
 #[pyclass(module = "nearmiss", frozen, extends = Answer)]
@@ -220,7 +220,7 @@ impl FirstContact {
 
 /// Answer of Near: features within the distance, a row a pair.
 ///
-/// A row is a vertex and a face, or two edges. Rows ascend by `kind`, then by feature a and its
+/// A row is two features: see `Kind`. Rows ascend by `kind`, then by feature a and its
 /// body, then by feature b.
 #[pyclass(module = "nearmiss", frozen, extends = Answer)]
 pub struct NearPairs;

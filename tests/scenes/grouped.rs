@@ -17,10 +17,10 @@ fn scenes() -> Vec<Vec<Body>> {
     let between = |n, seed| moving(n, seed).with_filter(filter);
     let loose = threads(60, 8).expect("threads");
     vec![
-        vec![loose],
         vec![moving(60, 7)],
         vec![between(40, 3), between(30, 4)],
         vec![moving(20, 5), between(20, 6)],
+        vec![loose],
     ]
 }
 

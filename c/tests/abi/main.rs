@@ -3,6 +3,7 @@
 mod answers;
 mod approaching;
 mod bodies;
+mod elements;
 mod exclusions;
 mod interrupted;
 mod left_out;
@@ -82,6 +83,10 @@ fn described(body: &Body) -> NearmissBody {
         triangles: body.faces().as_ptr().cast(),
         triangle_count: body.face_count(),
         self_collision: 1,
+        edges: body.edges().as_ptr().cast(),
+        edge_count: body.edges().len(),
+        points: body.points().as_ptr(),
+        point_count: body.points().len(),
         ..nearmiss_body()
     }
 }

@@ -27,8 +27,8 @@ pub fn soup(n: usize, seed: u64, moving: bool) -> Result<Body, Error> {
     scene.body(name)
 }
 
-/// The moving soup, of which one triangle in three stays. Of the others one in two is a thread of two
-/// edges, one in two is three points.
+/// The moving soup, of which one triangle in three stays. The others are threads of two edges, and
+/// three points, by turns.
 ///
 /// # Errors
 /// As [`soup`].

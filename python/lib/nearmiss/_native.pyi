@@ -222,7 +222,8 @@ class Body:
     """Mesh that takes part in a scene: its way to move, and the bodies that it may meet.
 
     - `vertices`: (n, 3) numbers, copied. float32 and float64 are kept, others become float64.
-    - `faces`: (m, 3) integers from 0, the vertices of each triangle, copied.
+    - `faces`: (m, 3) integers from 0, the vertices of each triangle, copied. It may be empty if there
+      are edges or points.
     - `kind`: "deformable" (each vertex moves by itself), "rigid" (moves by a Pose) or "fixed" (never
       moves; cheapest).
     - `self_collision`: whether the body is tested against itself. Default: deformable bodies are,
@@ -235,6 +236,11 @@ class Body:
     - `thickness`: radius around the surface that belongs to the body, a length of at least 0; or one
       for each vertex, in between linear. Near queries and queries in motion add those of both bodies
       to their distance; all others ignore them.
+    - `edges`: (k, 2) integers. Edges of no face take part by themselves, as hair and threads do. Edges
+      of answers have their numbers in this list; those of faces that it lacks come behind, by
+      (larger vertex, smaller vertex).
+    - `points`: vertices that take part by themselves, as particles do. Those of a face or an edge do
+      anyway.
 
     Raises InvalidArgumentError for a thickness that is no length.
     Raises InputError for vertices that are not finite and for indices without a vertex.
@@ -253,6 +259,8 @@ class Body:
         name: str = "a mesh",
         pose: Union[Pose, Array, None] = None,
         thickness: Union[float, Array] = 0.0,
+        edges: Array | None = None,
+        points: Array | None = None,
     ) -> Body: ...
 
     @property
@@ -274,6 +282,14 @@ class Body:
     @property
     def face_count(self) -> int:
         """Number of triangles."""
+
+    @property
+    def edges(self) -> NDArray[np.uint32]:
+        """Edges, as given: (k, 2) integers."""
+
+    @property
+    def points(self) -> NDArray[np.uint32]:
+        """Points, as given."""
 
 class Scene:
     """Bodies, numbered from 0 in the order in which they are added.
@@ -443,7 +459,7 @@ class Near(Query["NearPairs"]):
     - `distance`: a length above 0, in the unit of the vertices. No pair within it is missed. It may be
       0 if a body has a thickness.
 
-    A pair is a vertex and a face, or two edges. Features with a common vertex are left out.
+    A pair is two features: see `Kind`. Features with a common vertex are left out.
     """
 
     def __new__(cls, distance: float) -> Near: ...
@@ -527,7 +543,7 @@ class TrianglePairs(Answer):
 class Contacts(Answer):
     """Answer of Continuous: features that meet within the step, a row a pair.
 
-    A row is a vertex and a face, or two edges. Rows ascend by `kind`, then by feature a and its
+    A row is two features: see `Kind`. Rows ascend by `kind`, then by feature a and its
     body, then by feature b. An edge that already passes through a face at the start has no row: see
     `starts_crossing`.
     """
@@ -610,7 +626,7 @@ class FirstContact(Answer):
 class NearPairs(Answer):
     """Answer of Near: features within the distance, a row a pair.
 
-    A row is a vertex and a face, or two edges. Rows ascend by `kind`, then by feature a and its
+    A row is two features: see `Kind`. Rows ascend by `kind`, then by feature a and its
     body, then by feature b.
     """
 
@@ -1116,8 +1132,8 @@ class Detector:
 
         - `answer`: Contacts, NearPairs or TrianglePairs of this detector.
         - `body`: its number or name.
-        - `by`: "vertex" and "face" of vertex/face rows, "edge" of edge/edge rows. "face" is also each
-          triangle of a pair. "corner" is each vertex that takes part in a row.
+        - `by`: "vertex", "edge" and "face" are the features of rows. "face" is also each triangle of a
+          pair. "corner" is each vertex that takes part in a row.
 
         Returns two uint32 arrays, starts and rows: the rows of feature i are
         rows[starts[i]:starts[i + 1]], ascending. Raises InvalidArgumentError for other answers.
