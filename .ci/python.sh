@@ -47,7 +47,11 @@ if "$folder/blender/bin/pip" -q install "$wheel" 'pytest>=8' bpy; then
 else
     echo "not run: python/tests/test_blender.py, as bpy has no wheel for this Python"
 fi
+python3 -m venv "$folder/clusters"
+# Ray 2.60 waits 15 seconds for an agent of its own, and gives up on a busy machine.
+"$folder/clusters/bin/pip" -q install "$wheel" 'pytest>=8' 'dask[distributed]' 'ray==2.44.1'
 # As the tests have it: -p would choose other features of what others need, which is a second build.
 cargo build --locked --lib --bins --examples
+NEARMISS_PROGRAM=$target/debug/nearmiss "$folder/clusters/bin/python" -m pytest -q -rs python/tests/test_clusters.py
 NEARMISS_TRIMESH_TESTS=$folder/$trimesh/tests/test_collision.py NEARMISS_PROGRAM=$target/debug/nearmiss \
     "$folder/user/bin/python" -m pytest -q -rs python
