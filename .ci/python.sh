@@ -43,7 +43,7 @@ tar -xzf "$folder/$trimesh.tar.gz" -C "$folder"
 wheel=$(echo "$folder"/wheels/nearmiss-*.whl)
 python3 -m venv "$folder/blender"
 if "$folder/blender/bin/pip" -q install "$wheel" 'pytest>=8' bpy; then
-    NEARMISS_WHEEL=$wheel "$folder/blender/bin/python" -m pytest -q -rs python/tests/test_blender.py
+    NEARMISS_WHEEL=$wheel "$folder/blender/bin/python" -m pytest -q -rs python/tests/test_blender*.py
 else
     echo "not run: python/tests/test_blender.py, as bpy has no wheel for this Python"
 fi

@@ -5,16 +5,20 @@
 set -euo pipefail
 
 fail() { echo "frames_merge.sh: $*" >&2; exit 2; }
+missing() { fail "steps $next to $(($1 - 1)) are missing in $folder; run their task again"; }
 
 [ $# = 2 ] || fail "it takes a folder and a number of steps, got $# arguments"
-next=0
-for part in "$1"/*-*.csv; do
+[[ $2 =~ ^[1-9][0-9]*$ ]] || fail "STEPS must be a number of at least 1, got $2"
+folder=$1 next=0
+shopt -s nullglob
+for part in "$folder"/*-*.csv; do
     name=${part##*/}
-    [[ $name =~ ^([0-9]{8})-([0-9]{8})\.csv$ ]] || fail "$part is no part of a film; empty the folder"
+    [[ $name =~ ^([0-9]{8})-([0-9]{8})\.csv$ ]] || fail "$part is no part of a film; remove it"
     first=$((10#${BASH_REMATCH[1]})) end=$((10#${BASH_REMATCH[2]}))
-    [ $first -ge $next ] || fail "$part overlaps another part; empty the folder, run all tasks again"
-    [ $first = $next ] || fail "steps $next to $((first - 1)) are missing in $1; run their task again"
+    [ $first -ge $next ] || fail "$part overlaps another part; empty the folder"
+    [ $first = $next ] || missing "$first"
     next=$end
 done
-[ "$next" = "$2" ] || fail "steps $next to $(($2 - 1)) are missing in $1; run their task again"
-awk 'FNR > 1 || NR == 1' "$1"/*-*.csv
+[ $next -le "$2" ] || fail "STEPS must be $next as in $folder, got $2"
+[ $next = "$2" ] || missing "$2"
+awk 'FNR > 1 || NR == 1' "$folder"/*-*.csv

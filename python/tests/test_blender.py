@@ -6,6 +6,7 @@ Blender is the package bpy. The package of the extension is installed by Blender
 import importlib.util
 import os
 import re
+import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -16,39 +17,12 @@ from shapes import soup
 
 import nearmiss
 
-FOLDER = Path(__file__).parent.parent / "blender"
-MANIFEST = (FOLDER / "blender_manifest.toml").read_text(encoding="utf-8")
-
-
-def load(name):
-    spec = importlib.util.spec_from_file_location(f"nearmiss_blender_{name}", FOLDER / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-# What needs no Blender.
-
-
-def test_the_manifest_has_the_version_of_nearmiss():
-    assert re.search(r'^version = "(.*)"$', MANIFEST, re.M)[1] == nearmiss.__version__
-
-
-def test_a_wheel_of_another_version_is_refused(tmp_path):
-    wheel = tmp_path / "nearmiss-9.9.9-cp310-abi3-linux_x86_64.whl"
-    wheel.touch()
-    with pytest.raises(SystemExit, match=re.escape(f"got {wheel.name}; build it")):
-        load("pack").pack([wheel], tmp_path)
-    assert list(tmp_path.iterdir()) == [wheel]
-
-
-# In Blender.
-
 bpy = pytest.importorskip("bpy", reason="Blender is not installed: pip install bpy")
 
 import bmesh  # noqa: E402
 from mathutils.bvhtree import BVHTree  # noqa: E402
 
+FOLDER = Path(__file__).parent.parent / "blender"
 SQUARE = np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0]], float)
 WALL = np.array([[1, 1, -1], [1, 5, -1], [1, 5, 1], [1, 1, 1]], float)
 """Crosses the square, in its middle."""
@@ -56,7 +30,9 @@ WALL = np.array([[1, 1, -1], [1, 5, -1], [1, 5, 1], [1, 1, 1]], float)
 
 @pytest.fixture(scope="module", autouse=True)
 def extension():
-    module = load("__init__")
+    spec = importlib.util.spec_from_file_location("nearmiss_blender", FOLDER / "__init__.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
     module.register()
     yield module
     module.unregister()
@@ -366,6 +342,7 @@ def test_without_an_active_mesh_the_operator_is_off():
 
 # The packed file, installed by a Blender without anything else.
 
+pack = runpy.run_path(str(FOLDER / "pack.py"))["pack"]
 INSTALL = """
 import importlib.machinery, sys
 file, user = sys.argv[1:]
@@ -400,12 +377,12 @@ def installed(packed, user):
 
 @pytest.mark.skipif("NEARMISS_WHEEL" not in os.environ, reason="NEARMISS_WHEEL names a wheel")
 def test_blender_installs_the_packed_file(tmp_path):
-    packed = load("pack").pack([Path(os.environ["NEARMISS_WHEEL"])], tmp_path)
+    packed = pack([Path(os.environ["NEARMISS_WHEEL"])], tmp_path)
     done = installed(packed, tmp_path / "user")
     assert done.returncode == 0, done.stdout + done.stderr
     assert "62 crossing pairs\nSuzanne: 52 faces" in done.stdout
 
 
 def test_a_packed_file_without_a_wheel_is_noticed(tmp_path):
-    done = installed(load("pack").pack([], tmp_path), tmp_path / "user")
+    done = installed(pack([], tmp_path), tmp_path / "user")
     assert done.returncode != 0 and "no nearmiss" in done.stderr

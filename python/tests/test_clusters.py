@@ -162,11 +162,16 @@ def test_parts_that_are_missing_or_overlap_are_named(tmp_path, film):
     for number in range(3):
         assert task(number, 3, parts, [], film)[0] == 0
     assert "steps 9 to 10 are missing" in merge(parts, 11)[2]
+    assert "STEPS must be 9 as in" in merge(parts, 8)[2]
+    for steps in (0, -1, "9 9", "x"):
+        assert f"STEPS must be a number of at least 1, got {steps}" in merge(parts, steps)[2]
     (parts / "00000003-00000006.csv").rename(tmp_path / "kept.csv")
     assert "steps 3 to 5 are missing" in merge(parts, 9)[2]
     assert task(0, 2, parts, [], film)[0] == 0
     assert "overlaps another part" in merge(parts, 9)[2]
-    assert "is no part" in merge(film[0].parent, 9)[2] or "is no part" in merge(tmp_path, 9)[2]
+    (tmp_path / "a-b.csv").touch()
+    assert "a-b.csv is no part" in merge(tmp_path, 9)[2]
+    assert "steps 0 to 8 are missing" in merge(tmp_path / "none", 9)[2]
     # A task that fails leaves no part.
     broken = [*film[:2], tmp_path / "none.obj", *film[3:]]
     status, _, errors = task(0, 3, tmp_path / "broken", [], broken)
