@@ -172,9 +172,10 @@ def select(surfaces, found):
     for surface, polygons in zip(surfaces, found):
         line = f"{surface.object.name}: {count_of(np.count_nonzero(polygons), 'face')}"
         sources = surface.sources[polygons]
-        lost = np.count_nonzero(sources < 0)
-        hidden = 0
-        if is_editable(surface.object):
+        if not (is_editable(surface.object) and surface.object.data.is_editmode):
+            sources = np.full(len(sources), -1)
+        lost, hidden = np.count_nonzero(sources < 0), 0
+        if lost < len(sources):
             mesh = bmesh.from_edit_mesh(surface.object.data)
             mesh.faces.ensure_lookup_table()
             for source in np.unique(sources[sources >= 0]):
@@ -183,7 +184,7 @@ def select(surfaces, found):
                 face.select_set(not face.hide)
             bmesh.update_edit_mesh(surface.object.data, loop_triangles=False, destructive=False)
         line += f", {hidden:,} hidden" if hidden else ""
-        lines.append(line + (f", {lost:,} of no face of the mesh" if lost else ""))
+        lines.append(line + (f", {lost:,} that cannot be selected" if lost else ""))
     return lines
 
 
@@ -201,9 +202,10 @@ class MESH_OT_nearmiss_select(Options, bpy.types.Operator):
     @classmethod
     def poll(cls, context):
         thing = context.active_object
-        if context.mode in {"OBJECT", "EDIT_MESH"} and thing is not None and is_editable(thing):
+        is_mode = context.mode in {"OBJECT", "EDIT_MESH"}
+        if is_mode and thing is not None and is_editable(thing) and thing.visible_get():
             return True
-        cls.poll_message_set("Needs a mesh of this file as active object, in object or edit mode")
+        cls.poll_message_set("The active object must be a visible mesh, in object or edit mode")
         return False
 
     def execute(self, context):

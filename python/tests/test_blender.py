@@ -242,7 +242,7 @@ def test_faces_without_a_source_are_counted():
     modifier.mode, modifier.voxel_size = "VOXEL", 0.2
     modifier = thing.modifiers.new("array", "ARRAY")
     modifier.relative_offset_displace = (0.1, 0, 0)
-    line = re.fullmatch(r"mesh: ([\d,]+) faces, \1 of no face of the mesh", select()[1])
+    line = re.fullmatch(r"mesh: ([\d,]+) faces, \1 that cannot be selected", select()[1])
     assert len(line[1]) > 1 and selected(thing) == []
 
 
@@ -292,7 +292,7 @@ def test_surfaces_of_curves_are_tested_too():
     thing.select_set(True)
     bpy.context.view_layer.objects.active = thing
     lines = select(others=True)
-    assert re.fullmatch(r"BézierCircle: (\d+) faces, \1 of no face of the mesh", lines[2])
+    assert re.fullmatch(r"BézierCircle: (\d+) faces, \1 that cannot be selected", lines[2])
     assert selected(thing) == [0] and curve.mode == "OBJECT"
 
 
@@ -336,8 +336,13 @@ def test_without_an_active_mesh_the_operator_is_off():
     assert not bpy.ops.mesh.nearmiss_select.poll()
     bpy.ops.object.light_add()
     assert not bpy.ops.mesh.nearmiss_select.poll()
-    squares()
+    thing = squares()
     assert bpy.ops.mesh.nearmiss_select.poll()
+    bpy.ops.object.mode_set(mode="SCULPT")
+    assert not bpy.ops.mesh.nearmiss_select.poll()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    thing.hide_set(True)
+    assert not bpy.ops.mesh.nearmiss_select.poll()
 
 
 # The packed file, installed by a Blender without anything else.
