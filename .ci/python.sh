@@ -39,7 +39,19 @@ trimesh=trimesh-$("$folder/user/bin/python" -c 'import trimesh; print(trimesh.__
 tar -xzf "$folder/$trimesh.tar.gz" -C "$folder"
 "$folder/user/bin/python" -m mypy --no-error-summary python/tests/typed.py
 "$folder/user/bin/pip" -q install warp-lang jax && { "$folder/user/bin/pip" -q --retries 0 install --index-url https://download.pytorch.org/whl/cpu torch 2>/dev/null || "$folder/user/bin/pip" -q install torch; }
+# Blender is large, needs an old numpy, and exists for few versions of Python.
+wheel=$(echo "$folder"/wheels/nearmiss-*.whl)
+python3 -m venv "$folder/blender"
+if "$folder/blender/bin/pip" -q install "$wheel" 'pytest>=8' bpy; then
+    NEARMISS_WHEEL=$wheel "$folder/blender/bin/python" -m pytest -q -rs python/tests/test_blender*.py
+else
+    echo "not run: python/tests/test_blender.py, as bpy has no wheel for this Python"
+fi
+python3 -m venv "$folder/clusters"
+# Ray 2.60 waits 15 seconds for an agent of its own, and gives up on a busy machine.
+"$folder/clusters/bin/pip" -q install "$wheel" 'pytest>=8' 'dask[distributed]' 'ray==2.44.1'
 # As the tests have it: -p would choose other features of what others need, which is a second build.
 cargo build --locked --lib --bins --examples
+NEARMISS_PROGRAM=$target/debug/nearmiss "$folder/clusters/bin/python" -m pytest -q -rs python/tests/test_clusters.py
 NEARMISS_TRIMESH_TESTS=$folder/$trimesh/tests/test_collision.py NEARMISS_PROGRAM=$target/debug/nearmiss \
     "$folder/user/bin/python" -m pytest -q -rs python
