@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The page of `nearmiss view`: the committed page is the one that its sources make, and it works in
-# headless Chromium. Needs npm and chromium; the program is built as cargo builds the default members.
+# headless Chromium. Needs npm and chromium; builds the program, unless NEARMISS names one.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

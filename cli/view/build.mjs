@@ -33,7 +33,12 @@ async function page() {
   if (licence !== read("node_modules/three/LICENSE")) {
     throw new Error("three.LICENSE is not the licence of node_modules/three; copy it");
   }
-  const parts = { sources: digest(), style: read("src/page.css"), licence, script: outputFiles[0].text };
+  const parts = {
+    sources: digest(),
+    style: read("src/page.css"),
+    licence,
+    script: outputFiles[0].text,
+  };
   const filled = Object.entries(parts).reduce(
     (text, [name, part]) => text.replace(`/*${name}*/`, () => part.trim()),
     read("src/page.html"),

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes the page that `nearmiss view` fills with data: cli/view/page.html.gz, which is committed.
-# `build.sh --check` makes it again and compares. Needs npm; the versions are those of package-lock.json.
+# `build.sh --check` makes it again and compares. Needs npm; package-lock.json has the versions.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 

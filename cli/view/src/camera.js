@@ -42,7 +42,9 @@ export class Eye {
   fit({ position, mesh }) {
     const { camera, controls } = this;
     camera.updateMatrixWorld();
-    const [right, up, back] = [0, 1, 2].map((k) => new three.Vector3().setFromMatrixColumn(camera.matrixWorld, k));
+    const [right, up, back] = [0, 1, 2].map((k) =>
+      new three.Vector3().setFromMatrixColumn(camera.matrixWorld, k),
+    );
     const box = new three.Box3();
     const point = new three.Vector3();
     for (const { start, count } of mesh.geometry.groups) {
@@ -81,7 +83,10 @@ export class Eye {
   /** Turns the eye about the upward axis, by an angle. */
   turn(angle) {
     const { camera, controls } = this;
-    camera.position.sub(controls.target).applyAxisAngle(camera.up.clone().normalize(), angle).add(controls.target);
+    camera.position
+      .sub(controls.target)
+      .applyAxisAngle(camera.up.clone().normalize(), angle)
+      .add(controls.target);
     controls.update();
   }
 }

@@ -1,5 +1,5 @@
-// The data of the page: one JSON object, and arrays in base64. Everything is checked when it is read,
-// so that a damaged page says so.
+// The data of the page: one JSON object, and arrays in base64. Everything is checked when it is
+// read, so that a damaged page says so.
 
 const SIZES = { u8: Uint8Array, u32: Uint32Array, f32: Float32Array, f64: Float64Array };
 
@@ -64,7 +64,11 @@ class Moment {
     this.numbers = array(`numbers-${at}`, "f64", this.rows * numbers.length);
     // A triangle and its colour, 0xRRGGBB, by turns.
     this.met = array(`met-${at}`, "u32");
-    below(`met-${at}`, this.met.filter((_, k) => k % 2 === 0), scene.size.faces);
+    below(
+      `met-${at}`,
+      this.met.filter((_, k) => k % 2 === 0),
+      scene.size.faces,
+    );
     words.forEach((name, k) => this.check(name, k, words.length));
   }
 
@@ -116,7 +120,9 @@ export function read() {
   scene.moment = (at) => new Moment(scene, at);
   scene.place = (at, count) => {
     const places = array(`places-${at}`, "f32", 3 * count);
-    return places.every(Number.isFinite) ? places : wrong(`places-${at}`, "has a number that is not finite");
+    return places.every(Number.isFinite)
+      ? places
+      : wrong(`places-${at}`, "has a number that is not finite");
   };
   return scene;
 }

@@ -8,12 +8,12 @@ import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeome
 /** Colours of the first feature and of the second, and of the points between them. */
 const COLOURS = [0x1456d0, 0xc01590];
 const INK = 0x10131a;
-/** The order of drawing: points and lines are above faces, and what is between features above all. */
+/** The order of drawing: lines are above faces, points above lines, nearest points above all. */
 const [FACE, LINE, DOT, ABOVE] = [1, 2, 3, 4];
 
 /**
- * Both features of a row. Each is a list of vertices [v], edges [v, w] or faces [v, w, x], by numbers
- * of vertices among those of all bodies.
+ * Both features of a row. Each is a list of vertices [v], edges [v, w] or faces [v, w, x], by
+ * numbers of vertices among those of all bodies.
  */
 export function features(scene, row) {
   const face = (at) => [...scene.faces.subarray(3 * at, 3 * at + 3)];
@@ -25,7 +25,9 @@ export function features(scene, row) {
   if ("tri_a" in row) {
     return [row.tri_a, row.tri_b].map((triangle, k) => [face(bodies[k].firstFace + triangle)]);
   }
-  return bodies.map((body) => Array.from({ length: body.faces }, (_, k) => face(body.firstFace + k)));
+  return bodies.map((body) =>
+    Array.from({ length: body.faces }, (_, k) => face(body.firstFace + k)),
+  );
 }
 
 /** Whether a row is one of a triangle, or of its vertices and edges. */
@@ -39,13 +41,21 @@ export function isOf(scene, row, triangle) {
   if ("tri_a" in row) {
     return [row.tri_a, row.tri_b].some((own, k) => bodies[k].firstFace + own === triangle);
   }
-  return bodies.some((body) => triangle >= body.firstFace && triangle < body.firstFace + body.faces);
+  return bodies.some(
+    (body) => triangle >= body.firstFace && triangle < body.firstFace + body.faces,
+  );
 }
 
 /** Points between the features of a row; none if it has none. */
 export function nearest(scene, row, places) {
   if ("weight_0" in row) {
-    const ends = scene.names.kind[row.kind] === "vf" ? [[0], [1, 2, 3]] : [[0, 1], [2, 3]];
+    const ends =
+      scene.names.kind[row.kind] === "vf"
+        ? [[0], [1, 2, 3]]
+        : [
+            [0, 1],
+            [2, 3],
+          ];
     const sum = (all) =>
       all.reduce(
         (sum, k) => sum.addScaledVector(places.of(row[`vertex_${k}`]), row[`weight_${k}`]),
@@ -93,7 +103,14 @@ export class Picked {
     const at = (all) => all.flat().map((vertex) => places.of(vertex));
     const [vertices, edges, faces] = [of(1), of(2), of(3)];
     // A body is seen by its faces alone.
-    const sides = faces.length > 1 ? [] : faces.flatMap(([a, b, c]) => [[a, b], [b, c], [c, a]]);
+    const sides =
+      faces.length > 1
+        ? []
+        : faces.flatMap(([a, b, c]) => [
+            [a, b],
+            [b, c],
+            [c, a],
+          ]);
     if (faces.length > 0) {
       this.surface(at(faces), colour);
     }
@@ -113,13 +130,21 @@ export class Picked {
   }
 
   surface(points, color) {
-    const looks = { color, side: three.DoubleSide, transparent: true, opacity: 0.8, depthTest: false };
+    const looks = {
+      color,
+      side: three.DoubleSide,
+      transparent: true,
+      opacity: 0.8,
+      depthTest: false,
+    };
     const geometry = new three.BufferGeometry().setFromPoints(points);
     this.add(new three.Mesh(geometry, new three.MeshBasicMaterial(looks)), FACE);
   }
 
   line(points, color, linewidth, order = LINE) {
-    const geometry = new LineSegmentsGeometry().setPositions(points.flatMap((point) => point.toArray()));
+    const geometry = new LineSegmentsGeometry().setPositions(
+      points.flatMap((point) => point.toArray()),
+    );
     const material = new LineMaterial({ color, linewidth, depthTest: false, transparent: true });
     this.add(new LineSegments2(geometry, material), order);
   }

@@ -56,7 +56,10 @@ class View {
     by("clear").onchange = () => this.set(() => this.surface.clear(by("clear").checked));
     bodies.forEach((body, at) => this.body(body, at));
     let down;
-    by("canvas").addEventListener("pointerdown", ({ clientX, clientY }) => (down = [clientX, clientY]));
+    by("canvas").addEventListener(
+      "pointerdown",
+      ({ clientX, clientY }) => (down = [clientX, clientY]),
+    );
     by("canvas").addEventListener("click", (event) => {
       // A drag turns the bodies.
       if (down && Math.hypot(event.clientX - down[0], event.clientY - down[1]) < 4) {
@@ -146,7 +149,10 @@ class View {
   /** Lists the rows of the triangle in a place of the canvas; all rows, if there is none. */
   point({ offsetX, offsetY }) {
     const { clientWidth, clientHeight } = by("canvas");
-    const place = new three.Vector2((2 * offsetX) / clientWidth - 1, 1 - (2 * offsetY) / clientHeight);
+    const place = new three.Vector2(
+      (2 * offsetX) / clientWidth - 1,
+      1 - (2 * offsetY) / clientHeight,
+    );
     const ray = new three.Raycaster();
     ray.setFromCamera(place, this.eye.camera);
     const hit = ray.intersectObject(this.surface.mesh)[0];

@@ -53,7 +53,9 @@ export class Places {
 /** Turns a body about its pivot, from its places at the start. */
 function turned({ pivots, rotations }, from, time, to) {
   const quarter = Math.min(Math.floor(time * QUARTERS), QUARTERS - 1);
-  const [before, after, start] = [quarter, quarter + 1, 0].map((at) => new Quaternion(...rotations[at]));
+  const [before, after, start] = [quarter, quarter + 1, 0].map(
+    (at) => new Quaternion(...rotations[at]),
+  );
   const turn = before.slerp(after, time * QUARTERS - quarter).multiply(start.invert());
   const [first, last] = pivots.map((pivot) => new Vector3(...pivot));
   const pivot = first.clone().lerp(last, time);

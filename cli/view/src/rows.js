@@ -75,7 +75,9 @@ export class Rows {
     element("td", row, line);
     for (const name of this.scene.columns.shown) {
       const value = values[name];
-      const names = name.startsWith("body_") ? this.scene.bodies.map((body) => body.name) : this.scene.names[name];
+      const names = name.startsWith("body_")
+        ? this.scene.bodies.map((body) => body.name)
+        : this.scene.names[name];
       element("td", names ? names[value] : short(value), line).title = names ? "" : value;
     }
   }

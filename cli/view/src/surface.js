@@ -14,14 +14,22 @@ export class Surface {
     // Lines of triangles are drawn in front of the triangles.
     const behind = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
     this.material = new three.MeshLambertMaterial({ ...looks, ...behind });
-    const ink = new three.MeshBasicMaterial({ wireframe: true, color: 0x14171f, opacity: 0.35, transparent: true });
+    const ink = new three.MeshBasicMaterial({
+      wireframe: true,
+      color: 0x14171f,
+      opacity: 0.35,
+      transparent: true,
+    });
     this.mesh = this.part(three.Mesh, [this.material]);
     this.lines = this.part(three.Mesh, [ink]);
     this.lines.geometry = this.mesh.geometry;
     this.lines.visible = false;
     // Faces of two corners and of one.
     this.rods = this.part(three.LineSegments, new three.LineBasicMaterial({ vertexColors: true }));
-    this.points = this.part(three.Points, new three.PointsMaterial({ vertexColors: true, size: 5, sizeAttenuation: false }));
+    this.points = this.part(
+      three.Points,
+      new three.PointsMaterial({ vertexColors: true, size: 5, sizeAttenuation: false }),
+    );
     this.objects = [this.mesh, this.lines, this.rods, this.points];
     this.show(0, true);
   }

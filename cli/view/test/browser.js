@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdtempSync, rmSync } from "node:fs";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { PNG } from "pngjs";
@@ -34,8 +34,32 @@ export async function stop() {
 /** Runs the program. */
 export function nearmiss(...args) {
   assert(process.env.NEARMISS, "NEARMISS must be the path of the program");
-  return execFileSync(process.env.NEARMISS, args, { encoding: "utf8", stdio: ["ignore", "pipe", "pipe"] });
+  return execFileSync(process.env.NEARMISS, args, {
+    encoding: "utf8",
+    stdio: ["ignore", "pipe", "pipe"],
+  });
 }
+
+/** Writes a mesh; its path. */
+export function obj(name, text) {
+  writeFileSync(file(name), text);
+  return file(name);
+}
+
+/** Two triangles across each other, and one to their right. */
+export const CROSSING = `v -3 0 -3
+v 3 0 -3
+v 0 0 3
+v -1 -1 0
+v 1 -1 0
+v 0 1 0
+v 9 0 -3
+v 15 0 -3
+v 12 0 3
+f 1 2 3
+f 4 5 6
+f 7 8 9
+`;
 
 /** Writes a page by `nearmiss view`; its path. */
 export function written(name, ...args) {
@@ -98,10 +122,14 @@ export class Opened {
 
   /** Moves a slider. */
   async slide(id, value) {
-    await this.page.$eval(`#${id}`, (slider, value) => {
-      slider.value = value;
-      slider.dispatchEvent(new Event("input"));
-    }, value);
+    await this.page.$eval(
+      `#${id}`,
+      (slider, value) => {
+        slider.value = value;
+        slider.dispatchEvent(new Event("input"));
+      },
+      value,
+    );
   }
 
   async click(selector) {

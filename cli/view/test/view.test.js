@@ -1,27 +1,35 @@
 // The page of `nearmiss view`: it opens from disk, shows what `nearmiss picture` shows, and every
-// control changes what is seen. A page with broken data says so.
+// control changes what is seen.
 
 import assert from "node:assert/strict";
-import { readFileSync, writeFileSync } from "node:fs";
+import { readFileSync } from "node:fs";
 import { after, before, test } from "node:test";
 import { PNG } from "pngjs";
 import {
-  common, differing, file, isBlue, isBody, isPurple, isRed, nearmiss, Opened, SIZE, start, stop, where, written,
+  common,
+  CROSSING,
+  differing,
+  file,
+  isBlue,
+  isBody,
+  isPurple,
+  isRed,
+  nearmiss,
+  obj,
+  Opened,
+  SIZE,
+  start,
+  stop,
+  where,
+  written,
 } from "./browser.js";
 
 before(start);
 after(stop);
 
-const obj = (name, text) => {
-  writeFileSync(file(name), text);
-  return file(name);
-};
-
-/** Two triangles across each other, and one to their right. */
-const CROSSING =
-  "v -3 0 -3\nv 3 0 -3\nv 0 0 3\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nv 9 0 -3\nv 15 0 -3\nv 12 0 3\nf 1 2 3\nf 4 5 6\nf 7 8 9\n";
 /** A triangle that stands over another, or has passed it. */
-const over = (z) => `v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 ${z}\nv 2 1 ${z + 1}\nv 1 2 ${z + 1}\nf 1 2 3\nf 4 5 6\n`;
+const over = (z) =>
+  `v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 ${z}\nv 2 1 ${z + 1}\nv 1 2 ${z + 1}\nf 1 2 3\nf 4 5 6\n`;
 
 /** The picture of the program, at the size of the canvas. */
 function pictured(...args) {
@@ -35,13 +43,16 @@ test("the page shows what a picture shows, and needs no network", async () => {
   const opened = await Opened.open(written("draped.html", ...scene));
   const [shot, picture] = [await opened.shot(), pictured(...scene)];
   assert(await opened.shows(shot), "the window shows what is drawn");
-  assert(!(await opened.shows(picture)), "another picture is noticed");
+  assert(differing(shot, picture) > 0, "another picture is noticed");
   assert(common(where(shot, isBody), where(picture, isBody)) > 0.98, "outline");
   assert(common(where(shot, isRed), where(picture, isRed)) > 0.8, "contacts");
   // The picture from another side is another one.
   const other = pictured(...scene, "--view", "1,0,0.2");
   assert(common(where(shot, isBody), where(other, isBody)) < 0.9, "another view");
-  assert.deepEqual(opened.requests.filter((url) => !/^(file|data):/.test(url)), []);
+  assert.deepEqual(
+    opened.requests.filter((url) => !/^(file|data):/.test(url)),
+    [],
+  );
   await opened.close();
 });
 
@@ -69,16 +80,26 @@ test("frames of a film have their names, places and rows", async () => {
     seen.push([await opened.text("#name"), await opened.text("#count"), await opened.shot()]);
   }
   assert.match(seen[2][0], /^frame 3 \(.*film\.3\.obj\)$/);
-  assert.deepEqual(seen.map(([, count]) => count), ["no rows", "no rows", "1 to 1 of 1"]);
+  assert.deepEqual(
+    seen.map(([, count]) => count),
+    ["no rows", "no rows", "1 to 1 of 1"],
+  );
   assert(differing(seen[0][2], seen[1][2]) > 500);
-  assert.deepEqual(seen.map(([, , shot]) => where(shot, isRed).size > 0), [false, false, true]);
+  assert.deepEqual(
+    seen.map(([, , shot]) => where(shot, isRed).size > 0),
+    [false, false, true],
+  );
   await opened.page.keyboard.press("ArrowLeft");
   assert.match(await opened.text("#name"), /^frame 2 /);
   await opened.close();
 });
 
 test("frames that were passed over are named with the reason", async () => {
-  const files = [obj("gap.1.obj", "v 0 0\n"), obj("gap.2.obj", over(2)), obj("gap.3.obj", over(-0.5))];
+  const files = [
+    obj("gap.1.obj", "v 0 0\n"),
+    obj("gap.2.obj", over(2)),
+    obj("gap.3.obj", over(-0.5)),
+  ];
   const out = file("gap.html");
   assert.throws(() => nearmiss("view", ...files, "--discrete", "--keep-going", "--out", out));
   const opened = await Opened.open(out);
@@ -135,7 +156,10 @@ test("a triangle that is clicked lists its rows", async () => {
   const mesh = obj("clicked.obj", CROSSING);
   const opened = await Opened.open(written("clicked.html", mesh, "--view", "0,-1,0"));
   // As a picture places them: 18 wide in nine tenths of the canvas, the middle at x = 6.
-  const place = (x, z) => [SIZE[0] / 2 + ((x - 6) * 0.9 * SIZE[0]) / 18, SIZE[1] / 2 - (z * 0.9 * SIZE[0]) / 18];
+  const place = (x, z) => [
+    SIZE[0] / 2 + ((x - 6) * 0.9 * SIZE[0]) / 18,
+    SIZE[1] / 2 - (z * 0.9 * SIZE[0]) / 18,
+  ];
   await opened.page.mouse.click(...place(0, 1.5));
   assert(where(await opened.shot(), isBlue).size > 20, "the pair of the triangle is picked");
   await opened.page.mouse.click(...place(12, -1));
@@ -147,17 +171,32 @@ test("a triangle that is clicked lists its rows", async () => {
 });
 
 test("rows are listed a hundred at a time, in order or by time", async () => {
-  const opened = await Opened.open(written("many.html", "--scene", "soup-moving", "--triangles", "400"));
-  const cells = (at) => opened.page.$$eval("#rows tbody tr", (rows, at) => rows.map(({ cells }) => cells[at].title || cells[at].textContent), at);
+  const opened = await Opened.open(
+    written("many.html", "--scene", "soup-moving", "--triangles", "400"),
+  );
+  const cells = (at) =>
+    opened.page.$$eval(
+      "#rows tbody tr",
+      (rows, at) => rows.map(({ cells }) => cells[at].title || cells[at].textContent),
+      at,
+    );
   const all = Number((await opened.text("#count")).split(" of ")[1]);
   assert(all > 200);
-  assert.deepEqual(await cells(0), Array.from({ length: 100 }, (_, k) => String(k)));
+  assert.deepEqual(
+    await cells(0),
+    Array.from({ length: 100 }, (_, k) => String(k)),
+  );
   await opened.click("#after");
   assert.equal((await cells(0))[0], "100");
   await opened.page.select("#order", "toi");
-  const head = await opened.page.$$eval("#rows th", (cells) => cells.map((cell) => cell.textContent));
+  const head = await opened.page.$$eval("#rows th", (cells) =>
+    cells.map((cell) => cell.textContent),
+  );
   const times = (await cells(head.indexOf("toi"))).map(Number);
-  assert.deepEqual(times, times.toSorted((a, b) => a - b));
+  assert.deepEqual(
+    times,
+    times.toSorted((a, b) => a - b),
+  );
   await opened.page.keyboard.press("Escape");
   await opened.page.$eval("#order", (order) => order.blur());
   await opened.page.keyboard.press("ArrowDown");
@@ -167,7 +206,11 @@ test("rows are listed a hundred at a time, in order or by time", async () => {
 });
 
 test("a body that is off is not seen", async () => {
-  const scene = [obj("left.obj", CROSSING), "--with", obj("right.obj", CROSSING.replaceAll(" 0 ", " 4 "))];
+  const scene = [
+    obj("left.obj", CROSSING),
+    "--with",
+    obj("right.obj", CROSSING.replaceAll(" 0 ", " 4 ")),
+  ];
   const opened = await Opened.open(written("bodies.html", ...scene, "--view", "1,-2,0.5"));
   const both = where(await opened.shot(), isBody);
   const toggle = (at) => opened.click(`#bodies label:nth-child(${at}) input`);
@@ -185,7 +228,9 @@ test("a body that is off is not seen", async () => {
 });
 
 test("the mouse turns the bodies, edges and see-through change them, play moves them", async () => {
-  const opened = await Opened.open(written("controls.html", obj("c0.obj", over(1)), obj("c1.obj", over(-3))));
+  const opened = await Opened.open(
+    written("controls.html", obj("c0.obj", over(1)), obj("c1.obj", over(-3))),
+  );
   let last = await opened.shot();
   const changes = async (what, change) => {
     await change();
@@ -222,7 +267,9 @@ test("the mouse turns the bodies, edges and see-through change them, play moves 
 test("a body that turns goes on its arc", async () => {
   obj("bar.obj", "v 1 -0.5 0\nv 5 -0.5 0\nv 5 0.5 0\nf 1 2 3\nf 1 3 1\n");
   obj("ground.obj", "v -5 -5 -1\nv 5 -5 -1\nv 0 5 -1\nf 1 2 3\n");
-  const scene = obj("turn.toml", `[[body]]
+  const scene = obj(
+    "turn.toml",
+    `[[body]]
 name = "bar </script><b>"
 mesh = "bar.obj"
 kind = "rigid"
@@ -232,7 +279,8 @@ poses = [{}, { turn = [0, 0, 4.71238898038469] }]
 name = "ground"
 mesh = "ground.obj"
 kind = "fixed"
-`);
+`,
+  );
   const opened = await Opened.open(written("turn.html", scene, "--view", "0,0,1", "--up", "0,1,0"));
   assert.match(await opened.text("#bodies"), /bar <\/script><b>: 2 triangles/);
   await opened.click("#bodies label:nth-child(2) input");
@@ -240,7 +288,11 @@ kind = "fixed"
     await opened.slide("time", time);
     const pixels = [...where(await opened.shot(), isBody)];
     const mean = (of) => pixels.reduce((sum, pixel) => sum + of(pixel), 0) / pixels.length;
-    return [mean((pixel) => pixel % SIZE[0]), mean((pixel) => -Math.floor(pixel / SIZE[0])), pixels.length];
+    return [
+      mean((pixel) => pixel % SIZE[0]),
+      mean((pixel) => -Math.floor(pixel / SIZE[0])),
+      pixels.length,
+    ];
   };
   const ends = [await middle(0), await middle(1)];
   // The pivot does not move. The bar points along x, then along -y: it has turned by 270 degrees.
@@ -249,7 +301,10 @@ kind = "fixed"
   const pivot = [ends[1][0], ends[0][1]];
   const at = ([x, y]) => [x - pivot[0], y - pivot[1]].map((part) => Math.round(part / arm) + 0);
   assert.deepEqual([...ends, ...half].flatMap(at), [1, 0, 0, -1, 0, 1, -1, 0]);
-  assert(half.every(([, , size]) => Math.abs(size / ends[0][2] - 1) < 0.1), "it stays rigid");
+  assert(
+    half.every(([, , size]) => Math.abs(size / ends[0][2] - 1) < 0.1),
+    "it stays rigid",
+  );
   await opened.close();
 });
 
@@ -263,51 +318,16 @@ test("rods and points are seen", async () => {
 });
 
 test("a hundred thousand triangles are drawn, and the time is printed", async () => {
-  const opened = await Opened.open(written("large.html", "--scene", "draped", "--triangles", "100000", "--discrete"));
+  const opened = await Opened.open(
+    written("large.html", "--scene", "draped", "--triangles", "100000", "--discrete"),
+  );
   await opened.click("#measure");
   const printed = await opened.text("#measured");
   assert.match(printed, /^[0-9.]+ ms a view$/);
   const begin = performance.now();
   await opened.slide("moment", 0);
   await opened.drawn();
-  console.log(`100,000 triangles, drawn by software: ${printed}; a frame is shown in ${(performance.now() - begin).toFixed(0)} ms`);
+  const shown = (performance.now() - begin).toFixed(0);
+  console.log(`100,000 triangles, drawn by software: ${printed}; a frame is shown in ${shown} ms`);
   await opened.close();
 });
-
-// Faults.
-
-/** A page with a fault in its data, by its text. */
-function planted(name, change) {
-  const text = readFileSync(written("sound.html", obj("sound.obj", CROSSING)), "utf8");
-  const faulty = change(text);
-  assert.notEqual(faulty, text, `no fault was planted: ${name}`);
-  writeFileSync(file("faulty.html"), faulty);
-  return file("faulty.html");
-}
-
-const blob = (id) => new RegExp(`(<script type="text/plain" id="${id}">)([^<]*)`);
-const u32 = (...all) => Buffer.from(Uint32Array.from(all).buffer).toString("base64");
-
-const FAULTS = {
-  "places that are cut": (text) => text.replace(blob("places-0"), (_, head, data) => head + data.slice(0, -16)),
-  "a place that is no number": (text) => text.replace(blob("places-0"), (_, head, data) => head + "AADAfw" + data.slice(6)),
-  "places that are missing": (text) => text.replace('id="places-0"', 'id="places-9"'),
-  "faces that are no base64": (text) => text.replace(blob("faces"), "$1?$2"),
-  "an index beyond the vertices": (text) => text.replace(blob("faces"), (_, head) => head + u32(0, 1, 2, 3, 4, 9, 6, 7, 8)),
-  "a triangle beyond the faces": (text) => text.replace(blob("words-0"), (_, head) => head + u32(0, 0, 0, 3, 0)),
-  "a body that is not there": (text) => text.replace(blob("words-0"), (_, head) => head + u32(1, 0, 0, 1, 0)),
-  "a kind that has no name": (text) => text.replace(blob("words-0"), (_, head) => head + u32(0, 0, 0, 1, 4)),
-  "another number of rows": (text) => text.replace('"rows":1', '"rows":2'),
-  "another format": (text) => text.replace('"format":1', '"format":2'),
-  "a head that is cut": (text) => text.replace('{"format"', '{"form'),
-};
-
-for (const [name, change] of Object.entries(FAULTS)) {
-  test(`a page with ${name} says so`, async () => {
-    const opened = await Opened.open(planted(name, change));
-    assert(opened.faults.length > 0, "no fault in the console");
-    assert.match(await opened.text("#fault"), /^This page cannot be shown: .+/);
-    await assert.rejects(opened.close());
-    await opened.page.close();
-  });
-}
