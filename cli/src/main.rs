@@ -1,5 +1,5 @@
-//! The program: `detect`, `check`, `explain`, `picture`, `selftest`, `completions`, `man`; and `lab` for
-//! measurements.
+//! The program: `detect`, `check`, `explain`, `picture`, `view`, `selftest`, `completions`, `man`; and
+//! `lab` for measurements.
 
 mod args;
 mod check;
@@ -18,6 +18,7 @@ mod selftest;
 mod sequence;
 mod shell;
 mod stop;
+mod view;
 mod vtp;
 
 use args::Command;
@@ -50,6 +51,7 @@ fn run(command: Command) -> Result<ExitCode, Error> {
         Command::Check(args) => check::check(&args),
         Command::Explain(args) => explain::explain(&args),
         Command::Picture(args) => picture::picture(&args),
+        Command::View(args) => view::view(&args),
         Command::Selftest(args) => selftest::selftest(&args),
         Command::Completions(args) => shell::completions(&args),
         Command::Man(args) => shell::man(&args),

@@ -79,7 +79,7 @@ pub fn starts(bodies: &[Body]) -> Vec<(u32, usize)> {
 }
 
 /// A body's vertices at that time of the step, from 0 to 1; at 0 exactly.
-fn placed(body: &Body, time: f64) -> Vec<[f64; 3]> {
+pub fn placed(body: &Body, time: f64) -> Vec<[f64; 3]> {
     let [from, to] = if body.kind() == BodyKind::Rigid {
         let own = body.positions_t0().to_f64();
         body.poses().map(|pose| own.iter().map(|point| pose.apply(*point)).collect())

@@ -13,7 +13,7 @@ pub fn files(of: &str) -> Vec<Source> {
         let name = path.strip_prefix(root).expect("below the root").to_string_lossy().replace('\\', "/");
         if path.is_dir() {
             let last = path.file_name().and_then(|n| n.to_str()).unwrap_or_default();
-            if path != root && (last == "target" || last == ".git") {
+            if path != root && (["target", ".git", "node_modules"].contains(&last)) {
                 return;
             }
             let mut inside: Vec<_> =

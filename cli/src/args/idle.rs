@@ -23,7 +23,8 @@ pub fn check(command: &Command, own: &ArgMatches) -> Result<(), Error> {
             }
             detect(args, given)
         }
-        Command::Picture(args) => picture(&args.detect, given),
+        Command::Picture(args) => drawn(&args.detect, "a picture shows a frame", given),
+        Command::View(args) => drawn(&args.detect, "a page shows frames and rows", given),
         Command::Explain(args) => explain(args, given),
         Command::Lab(lab) => match &lab.command {
             Lab::Plan(args) => plan(&args.detect, given),
@@ -167,8 +168,8 @@ fn plan(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
     detect(args, given)
 }
 
-fn picture(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
-    let why = "a picture shows a frame";
+/// Options of a picture and of a page.
+fn drawn(args: &DetectArgs, why: &str, given: CommandLine) -> Result<(), Error> {
     given.none_of(&super::picture::IDLE, why, "remove it, or use detect")?;
     detect(args, given)
 }

@@ -24,6 +24,7 @@ mod tables;
 mod to_query;
 mod trade;
 mod turns;
+pub mod view;
 
 pub use bench::{BenchArgs, Question};
 pub use check::CheckArgs;
@@ -42,6 +43,7 @@ pub use shell::{CompletionsArgs, ManArgs};
 pub use tables::{Profile, Table, TablesArgs};
 pub use trade::TradeArgs;
 pub use turns::TurnsArgs;
+pub use view::ViewArgs;
 
 use crate::output::stdout_failed;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -80,6 +82,8 @@ pub enum Command {
     Explain(Box<ExplainArgs>),
     /// Draw a frame as PNG; triangles in contact are red.
     Picture(Box<PictureArgs>),
+    /// Write a page to look at: all frames, and the features of rows.
+    View(Box<ViewArgs>),
     /// Check this machine: known answers, and GPU against CPU.
     Selftest(SelftestArgs),
     /// Print the completions of a shell.
@@ -141,6 +145,7 @@ fn sort_out(command: &mut Command, own: &ArgMatches) -> Result<(), Error> {
     match command {
         Command::Detect(args) => several(own, args),
         Command::Picture(args) => several(own, &mut args.detect),
+        Command::View(args) => several(own, &mut args.detect),
         Command::Explain(args) => {
             files::part(own, &mut args.meshes, &mut args.with);
             files::at_most_two(&args.meshes, &args.with)

@@ -42,16 +42,8 @@ pub struct LookArgs {
     /// Set width and height in pixels, each from 16 to 8192
     #[arg(long, value_name = "WxH", default_value = "1200x900", allow_hyphen_values = true, value_parser = size())]
     pub size: [usize; 2],
-    /// Look from this direction, of any length
-    ///
-    /// It points from the middle of the bodies to the viewer.
-    #[arg(long, value_name = "X,Y,Z", default_value = "4,-7,3.5", allow_hyphen_values = true,
-        value_parser = direction())]
-    pub view: [f64; 3],
-    /// Draw this direction upwards, of any length
-    #[arg(long, value_name = "X,Y,Z", default_value = "0,0,1", allow_hyphen_values = true,
-        value_parser = direction())]
-    pub up: [f64; 3],
+    #[command(flatten)]
+    pub direction: DirectionArgs,
     /// Fill the picture with all bodies, or with the contacts
     #[arg(long, value_name = "WHAT", value_enum, default_value_t = Around::All, hide_possible_values = true,
         long_help = super::help::listed("Fill the picture with all bodies, or with the contacts", &["all", "contacts"]))]
@@ -67,6 +59,21 @@ pub struct LookArgs {
     pub time: f64,
 }
 
+/// From where the bodies are seen.
+#[derive(Args)]
+pub struct DirectionArgs {
+    /// Look from this direction, of any length
+    ///
+    /// It points from the middle of the bodies to the viewer.
+    #[arg(long, value_name = "X,Y,Z", default_value = "4,-7,3.5", allow_hyphen_values = true,
+        value_parser = direction())]
+    pub view: [f64; 3],
+    /// Draw this direction upwards, of any length
+    #[arg(long, value_name = "X,Y,Z", default_value = "0,0,1", allow_hyphen_values = true,
+        value_parser = direction())]
+    pub up: [f64; 3],
+}
+
 impl LookArgs {
     /// How bodies are seen without options.
     pub fn usual() -> LookArgs {
@@ -75,7 +82,7 @@ impl LookArgs {
     }
 }
 
-/// Options of `detect` that a picture refuses.
+/// Options of `detect` that a picture and a page refuse.
 pub const IDLE: [&str; 11] = [
     "repeat",
     "only",

@@ -46,6 +46,20 @@ fn failed(path: &Path, text: &impl ToString) -> Error {
     Error::Output { file: path.display().to_string(), text: text.to_string() }
 }
 
+/// Why work that writes a file ended before its end.
+pub enum Stop {
+    /// The file could not be written.
+    File(String),
+    /// Anything else.
+    Other(Error),
+}
+
+impl From<Error> for Stop {
+    fn from(error: Error) -> Stop {
+        Stop::Other(error)
+    }
+}
+
 /// A file that will be written when the work is done; whether it can be is known before.
 pub struct Target {
     path: PathBuf,
@@ -71,6 +85,27 @@ impl Target {
         }
         let way = place::way(path).map_err(|e| failed(path, &e))?;
         Ok(Target { path: path.to_owned(), packed: is_packed(path), way })
+    }
+
+    /// Writes the file while work runs that may fail for its own reasons.
+    ///
+    /// # Errors
+    /// Those of the work, and those of [`Target::write`].
+    pub fn write_while<T>(self, work: impl FnOnce(&mut dyn Write) -> Result<T, Stop>) -> Result<T, Error> {
+        let (mut done, mut failed) = (None, None);
+        let written = self.write(|out| match work(out) {
+            Ok(value) => {
+                done = Some(value);
+                Ok(())
+            }
+            Err(Stop::File(text)) => Err(text),
+            Err(Stop::Other(error)) => Err(failed.insert(error).to_string()),
+        });
+        match (failed, done) {
+            (Some(error), _) => Err(error),
+            (None, Some(value)) => written.map(|()| value),
+            (None, None) => Err(written.err().unwrap_or(Error::Bug { what: "a file without work".into() })),
+        }
     }
 
     /// Writes the file.

@@ -14,6 +14,7 @@ use crate::paint::{self, GREY, ORANGE, Paint, Painted, RED};
 use crate::progress::during;
 use crate::sequence::{PARTIAL, Sequence, Walk, check_name, named, untested};
 use camera::Camera;
+pub use camera::bounds;
 use draw::Picture;
 use nearmiss::contacts::{Contacts, Geometry, Rows};
 use nearmiss::error::Error;
@@ -24,6 +25,7 @@ use nearmiss::scene::Scene;
 use nearmiss::words::counted;
 use nearmiss_kernels::math::Vec3;
 use nearmiss_lab::OneQuery;
+pub use shade::colours as body_colours;
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
@@ -86,7 +88,7 @@ fn film(
     }
     let targets = series(&args.detect, all, ("--out", out), at_rest)?;
     let is_one = look.fit == Some(Fit::All) || (look.fit.is_none() && !around_met);
-    let directions = [look.view, look.up].map(unit);
+    let directions = [look.direction.view, look.direction.up].map(unit);
     let camera = is_one.then(|| Camera::new(all.corners(), std::iter::empty(), directions, look.size));
     let mut walk = Walk::new(&args.detect, all, (scene, query))?;
     let mut code = ExitCode::SUCCESS;
@@ -168,7 +170,8 @@ fn pixels(
     let colours: Vec<[u8; 3]> =
         colours.iter().zip(own).map(|(colour, own)| if *colour == GREY { own } else { *colour }).collect();
     let picture = Picture { points, faces: mesh.faces(), colours: &colours, met: &met, marks };
-    let (directions, around_met) = ([look.view, look.up].map(unit), look.around == Around::Contacts);
+    let (directions, around_met) =
+        ([look.direction.view, look.direction.up].map(unit), look.around == Around::Contacts);
     let fitted = || picture.camera(directions, look.size, around_met);
     during("drawing", || match camera {
         Some(camera) => picture.draw(camera, look.size),

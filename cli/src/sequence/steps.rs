@@ -5,7 +5,7 @@ use super::lines::{Total, line, untested};
 use super::{Sequence, Walk, check_name};
 use crate::args::DetectArgs;
 use crate::detect::{Places, places, promise};
-use crate::output::{Target, print};
+use crate::output::{Stop, Target, print};
 use crate::paint::{self, Paint};
 use crate::report::{FileFaces, Format, Report};
 use crate::rows::{Columns, JsonRows};
@@ -22,20 +22,6 @@ use std::process::ExitCode;
 
 /// Exit status of a sequence with steps that could not be tested: that of bad input.
 pub const PARTIAL: u8 = 3;
-
-/// Why a sequence ended before its end.
-enum Stop {
-    /// The file of contacts could not be written.
-    File(String),
-    /// Anything else.
-    Other(Error),
-}
-
-impl From<Error> for Stop {
-    fn from(error: Error) -> Stop {
-        Stop::Other(error)
-    }
-}
 
 /// The target of rows.
 enum Out<'a> {
@@ -94,24 +80,13 @@ pub fn detect(
             Ok(code) => Ok(code),
         };
     };
-    let (mut failed, mut code) = (None, ExitCode::SUCCESS);
-    let written = target.write(|out| {
-        let out = match format {
-            Format::Csv => Out::Csv(Box::new(csv::Writer::from_writer(out as &mut dyn Write)), 0),
+    target.write_while(|out| {
+        steps.run(match format {
+            Format::Csv => Out::Csv(Box::new(csv::Writer::from_writer(out)), 0),
             Format::Json => Out::Json(out),
             Format::Vtp => Out::Vtp(Box::default(), out),
-        };
-        let done = steps.run(out).map_err(|stop| match stop {
-            Stop::File(text) => text,
-            Stop::Other(error) => failed.insert(error).to_string(),
-        });
-        code = done?;
-        Ok(())
-    });
-    match failed {
-        Some(error) => Err(error),
-        None => written.map(|()| code),
-    }
+        })
+    })
 }
 
 struct Steps<'a> {

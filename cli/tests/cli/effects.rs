@@ -6,8 +6,8 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 
 /// Commands that are tried here.
-const COMMANDS: [&str; 10] =
-    ["detect", "check", "plan", "picture", "explain", "scene", "bench", "tables", "trade", "turns"];
+const COMMANDS: [&str; 11] =
+    ["detect", "check", "plan", "picture", "view", "explain", "scene", "bench", "tables", "trade", "turns"];
 
 /// Options of commands that take long: the test that sees what each changes.
 const ELSEWHERE: [(&str, &[&str], &str); 5] = [
@@ -100,7 +100,8 @@ fn every_option_changes_something_or_is_refused() {
         folder.write("seam.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 4 5 6\n");
     let fan = folder.write("fan.obj", "v 0 0 0\nv 2 0 0\nv 0 2 0\nv .5 .5 1\nv .5 .5 -1\nf 1 2 3\nf 1 4 5\n");
     let made = |name: &str| folder.path(&format!("made/{name}"));
-    let [csv, json, ply, png, frames, dir] = ["a.csv", "a.json", "a.ply", "a.png", "#.png", ""].map(made);
+    let [csv, json, ply, png, html, frames, dir] =
+        ["a.csv", "a.json", "a.ply", "a.png", "a.html", "#.png", ""].map(made);
     let scene: Vec<&str> = vec!["--scene", "soup-moving", "--triangles", "300", "--backend", "cpu", "--json"];
     let still: Vec<&str> = vec!["--scene", "soup", "--triangles", "300", "--backend", "cpu", "--json"];
     let files: Vec<&str> = vec![&t0, &t1, "--backend", "cpu", "--json"];
@@ -221,6 +222,11 @@ fn every_option_changes_something_or_is_refused() {
         ("picture", vec![&t0, "--size", "64x64", "--out", &png], no.clone(), vec!["--time", "0.5"]),
         ("picture", vec![&t0, "--out", &png], vec!["--size", "64x64"], vec!["--size", "64x32"]),
         ("picture", vec![&t0, "--size", "64x64"], no.clone(), vec!["--out", &png]),
+        // Pages.
+        ("view", vec![&t0, &t1, "--out", &html], no.clone(), vec!["--view", "1,0,0"]),
+        ("view", vec![&t0, &t1, "--out", &html], no.clone(), vec!["--up", "1,0,0"]),
+        ("view", vec![&t0, "--out", &html], no.clone(), vec!["--heat"]),
+        ("view", vec![&t0], no.clone(), vec!["--out", &html]),
         // Faults of meshes.
         ("check", vec![&quads, "--json"], no.clone(), vec!["--first", "0"]),
         ("check", vec![&quads], no.clone(), vec!["--json"]),
@@ -270,7 +276,7 @@ fn every_option_changes_something_or_is_refused() {
         ("trade", vec!["--mesh", &t0, "--backend", "cuda"], no.clone(), vec!["--cases", "3"]),
         ("trade", vec!["--mesh", &t0, "--backend", "cuda"], no.clone(), vec!["--seed", "3"]),
     ];
-    // A plan and a picture have the options of detect, by the same code.
+    // A plan, a picture and a page have the options of detect, by the same code.
     pairs.push(("plan", scene, no.clone(), vec!["--no-run"]));
     let silent: Vec<String> = pairs.iter().filter_map(|pair| is_silent(pair, &folder)).collect();
     assert!(silent.is_empty(), "{}", silent.join("\n"));
@@ -286,8 +292,9 @@ fn every_option_changes_something_or_is_refused() {
         let given = |list: &[&str]| -> Vec<String> {
             list.iter().filter_map(|word| word.strip_prefix("--")).map(str::to_owned).collect()
         };
-        let of =
-            |pair: &&Pair| pair.0 == command || (matches!(command, "picture" | "plan") && pair.0 == "detect");
+        let of = |pair: &&Pair| {
+            pair.0 == command || (matches!(command, "picture" | "view" | "plan") && pair.0 == "detect")
+        };
         let mut tried: BTreeSet<String> = pairs
             .iter()
             .filter(of)

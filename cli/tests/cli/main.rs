@@ -35,6 +35,7 @@ mod summary;
 mod tables;
 mod trade;
 mod turns;
+mod view;
 mod with;
 mod words;
 
@@ -287,7 +288,8 @@ fn the_program_says_what_it_is() {
         let lines = below.lines().take_while(|line| !line.is_empty());
         lines.filter_map(|line| line.split_whitespace().next().map(str::to_owned)).collect()
     };
-    let product = ["detect", "check", "explain", "picture", "selftest", "completions", "man", "lab", "help"];
+    let product =
+        ["detect", "check", "explain", "picture", "view", "selftest", "completions", "man", "lab", "help"];
     assert_eq!(commands(&ok(&["--help"])), product);
     let lab = ["trade", "tables", "bench", "plan", "scene", "turns", "help"];
     assert_eq!(commands(&ok(&["lab", "--help"])), lab);

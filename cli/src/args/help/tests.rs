@@ -128,7 +128,7 @@ fn every_option_has_a_group_and_a_line_with_a_verb() {
 #[test]
 fn the_help_of_detect_is_short_and_of_the_product() {
     let all = every();
-    for name in ["detect", "picture", "explain", "selftest", "completions", "man"] {
+    for name in ["detect", "picture", "view", "explain", "selftest", "completions", "man"] {
         let (_, command) = all.iter().find(|(path, _)| path == name).expect("a command of the product");
         assert_eq!(short_fault(&page(command, false)), None, "{name}");
     }
