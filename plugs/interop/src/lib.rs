@@ -106,4 +106,4 @@ pub use array::{DeviceArray, OwnedArray};
 pub use element::Element;
 pub use input::{Input, Place, update};
 pub use nearmiss::Error;
-pub use submissions::Submissions;
+pub use submissions::{Places, Submissions};

@@ -7,6 +7,9 @@ use nearmiss::query::TypedQuery;
 use nearmiss::scene::{BodyId, DeviceMotion};
 use nearmiss::{Detector, Device, Error, Query};
 
+/// Arrays of deformable bodies.
+pub type Places<A> = Vec<(BodyId, Place<A>)>;
+
 /// A detector, and the arrays that its submitted frames read.
 ///
 /// A frame reads the arrays after the call that submits it. So this value owns detector and arrays.
@@ -26,7 +29,7 @@ pub struct Submissions<A: OwnedArray> {
 /// Arrays, dropped when the device has read them.
 struct Arrays<A: OwnedArray> {
     device: Device,
-    places: Vec<(BodyId, Place<A>)>,
+    places: Places<A>,
 }
 
 impl<A: OwnedArray> Drop for Arrays<A> {
@@ -56,7 +59,7 @@ impl<A: OwnedArray> Arrays<A> {
 impl<A: OwnedArray> Submissions<A> {
     /// Takes a detector and the arrays of its deformable bodies. Bodies without arrays rest. Arrays
     /// are checked by [`prepare`](Submissions::prepare).
-    pub fn new(detector: Detector, arrays: Vec<(BodyId, Place<A>)>) -> Self {
+    pub fn new(detector: Detector, arrays: Places<A>) -> Self {
         let device = detector.device().clone();
         Submissions { detector, arrays: Arrays { device, places: arrays } }
     }
@@ -92,7 +95,7 @@ impl<A: OwnedArray> Submissions<A> {
     }
 
     /// Borrows the arrays for kernels, by body.
-    pub fn views(&mut self) -> Vec<(BodyId, Place<A::View<'_>>)> {
+    pub fn views(&mut self) -> Places<A::View<'_>> {
         self.arrays.places.iter_mut().map(|(id, place)| (*id, place.as_mut().map(A::view))).collect()
     }
 
@@ -106,7 +109,7 @@ impl<A: OwnedArray> Submissions<A> {
     ///
     /// # Errors
     /// Those of the device. The arrays are leaked then: work may still read them.
-    pub fn into_parts(self) -> Result<(Detector, Vec<(BodyId, Place<A>)>), Error> {
+    pub fn into_parts(self) -> Result<(Detector, Places<A>), Error> {
         let Submissions { mut detector, mut arrays } = self;
         detector.unprepare();
         arrays.device.wait()?;
