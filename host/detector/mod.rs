@@ -110,6 +110,11 @@ impl Detector {
         })
     }
 
+    /// The device of its work.
+    pub fn device(&self) -> &Device {
+        &self.device
+    }
+
     /// The bodies at their current positions; those of device-resident bodies are stale.
     pub fn scene(&self) -> &Scene {
         &self.scene

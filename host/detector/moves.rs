@@ -24,7 +24,11 @@ impl Detector {
                 moved.push(Moved { body, rests: !named });
             }
         }
-        self.moved(&moved)
+        let moved = self.moved(&moved);
+        if moved.is_err() {
+            self.lose_unread();
+        }
+        moved
     }
 
     /// Moves bodies on the host, all or none. Returns for each body of the scene if it was named.

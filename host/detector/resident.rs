@@ -106,6 +106,16 @@ impl Detector {
         self.scene.bodies_mut()[body].placed_again(false);
     }
 
+    /// Loses the bodies whose arrays a failed frame has not read. No later call reads these arrays:
+    /// the caller may have freed them.
+    pub(super) fn lose_unread(&mut self) {
+        for body in 0..self.scene.bodies().len() {
+            if self.scene.bodies()[body].device_motion().is_some() {
+                self.lose(body);
+            }
+        }
+    }
+
     /// Downloads every body before the device's memory is freed. If positions of the last frame are
     /// invalid, its bodies are lost: they must be named again.
     pub(super) fn bring_all(&mut self) {
@@ -221,5 +231,31 @@ impl Places {
         let ends = self.all.ends.len();
         let poses = self.all.poses.get(i * ends..(i + 1) * ends).unwrap_or_default();
         (self.all.ends.iter().map(part).collect(), poses)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{DeviceMotion, DeviceRows, Motion, Number};
+    use crate::{Device, Discrete, Mesh, device::Backend};
+
+    #[test]
+    fn no_call_reads_arrays_of_a_frame_that_failed() {
+        let at = |z| Positions::F32(vec![[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]]);
+        let body = |z| Body::deformable(Mesh::new("cloth", at(z), vec![[0, 1, 2]]).expect("a mesh"));
+        let device = Device::open(Backend::Cpu, Some(1)).expect("a thread");
+        let mut detector = Detector::new(device, vec![body(0.0), body(1.0)]).expect("a detector");
+        // SAFETY: nothing reads them; that is the claim. There is nothing at this address.
+        let gone = unsafe { DeviceRows::new(8, 3, 12, Number::F32) }.expect("rows");
+        let gone = Motion::OnDevice(DeviceMotion::Positions(gone));
+        detector.scene.bodies_mut()[0].put(&gone);
+        detector.lose_unread();
+        let refused = detector.query(&Discrete::default()).map(|found| found.len());
+        let error = refused.expect_err("a position that is unknown").to_string();
+        assert!(error.starts_with("the position of cloth is unknown"), "{error}");
+        let id = detector.scene().ids().next().expect("a body");
+        detector.update(&[(id, Motion::positions(&at(1.0)))]).expect("known again");
+        assert_eq!(detector.query(&Discrete::default()).expect("an answer").len(), 1);
     }
 }

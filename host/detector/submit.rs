@@ -183,6 +183,18 @@ impl Detector {
         self.ended(submitted)
     }
 
+    /// Ends the preparation, if there is one: no later call reads the arrays that it named. Work that
+    /// was submitted before may still read them. Bodies are where the last submission placed them.
+    pub fn unprepare(&mut self) {
+        self.read_again(false);
+        self.engine.answered = None;
+        if let Some(pipeline) = self.engine.pipeline.as_mut().filter(|pipeline| pipeline.is_prepared()) {
+            // Nothing moves. An error of the device comes again with the next call, and the
+            // preparation has ended all the same.
+            let _ = pipeline.place(self.scene.bodies(), &[]);
+        }
+    }
+
     /// Returns the addresses of the answer to a submitted query, for the caller's kernels that
     /// follow on the stream. `None` if the query is not prepared, or if nothing can meet.
     pub fn on_device(&self, query: &Query) -> Option<DeviceAnswer> {
@@ -238,6 +250,11 @@ impl Detector {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::device::Backend;
+    use crate::mesh::Positions;
+    use crate::scene::{DeviceRows, Number};
+    use crate::{Body, Device, Mesh, Near};
+    use std::cell::Cell;
 
     #[test]
     fn rounds_end_with_the_first_that_is_whole() {
@@ -260,5 +277,27 @@ mod tests {
         let error = error.expect_err("no round was whole");
         assert!(matches!(error, Error::InvalidArgument { .. }) && rounds == PREPARING_ROUNDS);
         assert!(error.to_string().contains("64 rounds of `prepare`"), "{error}");
+    }
+
+    #[test]
+    fn arrays_of_an_ended_preparation_are_not_read() {
+        let at = |z| Positions::F32(vec![[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]]);
+        let body = |z| Body::deformable(Mesh::new("cloth", at(z), vec![[0, 1, 2]]).expect("a mesh"));
+        let device = Device::open(Backend::Cpu, Some(1)).expect("a thread");
+        let mut detector = Detector::new(device, vec![body(3.0), body(0.0)]).expect("a detector");
+        let id = detector.scene().ids().next().expect("a body");
+        let array: Vec<Cell<f32>> = at(2.0).to_f64().iter().flatten().map(|&x| Cell::new(x as f32)).collect();
+        // SAFETY: three vertices, which this test alone writes, between calls.
+        let rows = unsafe { DeviceRows::new(array.as_ptr() as u64, 3, 12, Number::F32) }.expect("rows");
+        let near = Near::within(1.5);
+        detector.prepare(&[(id, DeviceMotion::Positions(rows))], &[near.into()]).expect("prepared");
+        array.iter().skip(2).step_by(3).for_each(|z| z.set(1.0));
+        detector.submit().expect("submitted");
+        detector.unprepare();
+        array.iter().for_each(|x| x.set(f32::NAN));
+        assert!(!detector.is_prepared() && detector.submit().is_err());
+        assert!(!detector.query(&near).expect("an answer").is_empty());
+        detector.unprepare();
+        assert!(!detector.query(&near).expect("the same answer").is_empty());
     }
 }

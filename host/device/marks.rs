@@ -29,6 +29,19 @@ impl Device {
         }
     }
 
+    /// Waits for all work started before.
+    ///
+    /// # Errors
+    /// [`Error::Device`] with the driver's text, also of a kernel that failed before.
+    pub fn wait(&self) -> Result<(), Error> {
+        self.usage.waits("the device was waited for")?;
+        match &*self.machine {
+            Machine::Emulator(_) => Ok(()),
+            #[cfg(feature = "cuda")]
+            Machine::Cuda(c) => c.wait(),
+        }
+    }
+
     /// Number of replays so far: frames with the same work as the frame before. A GPU launches it
     /// as one graph.
     pub fn replays(&self) -> u64 {

@@ -10,6 +10,7 @@ mod interrupt;
 mod ledger;
 mod marks;
 mod replay;
+mod shared;
 mod usage;
 mod view;
 
@@ -21,6 +22,7 @@ pub use marks::Event;
 pub use nearmiss_emulator as emulator;
 pub use nearmiss_emulator::Interrupt;
 pub(crate) use replay::{Marks, Replay};
+pub use shared::Owner;
 pub use view::{Ahead, Kept, View};
 
 use crate::error::Error;
@@ -32,7 +34,6 @@ use bytemuck::Pod;
 use emulator::{Emulator, Mode};
 use ledger::Ledger;
 use nearmiss_kernels::entry::Entry;
-use std::ffi::c_void;
 use std::marker::PhantomData;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -125,28 +126,6 @@ impl Device {
             text: "this program was built without the feature `cuda`".into(),
             advice: "build it with that feature, or run on the CPU",
         })
-    }
-
-    /// A GPU by a context and a stream of the caller. All work goes to that stream, after its
-    /// earlier work; no other context is made. A null context is the one that the thread is bound
-    /// to. A null stream is the default one, which cannot be captured.
-    ///
-    /// # Errors
-    /// As for [`Device::gpu`].
-    ///
-    /// # Safety
-    /// Both are handles of CUDA's driver (`CUcontext`, `CUstream`), or a runtime `cudaStream_t` and
-    /// a null context. The stream is of that context. Both outlive the device, its clones and all
-    /// objects made with them.
-    #[cfg_attr(not(feature = "cuda"), allow(unused_variables, reason = "there is none"))]
-    pub unsafe fn from_stream(context: *mut c_void, stream: *mut c_void) -> Result<Device, Error> {
-        #[cfg(feature = "cuda")]
-        // SAFETY: the caller's promise.
-        return Ok(Self::with(Machine::Cuda(unsafe {
-            cuda::Cuda::from_stream(context.cast(), stream.cast())
-        }?)));
-        #[cfg(not(feature = "cuda"))]
-        Self::gpu(0)
     }
 
     /// An emulator, for example one under the sanitizer.

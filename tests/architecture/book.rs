@@ -167,7 +167,9 @@ fn a_page_that_is_not_in_the_book_is_noticed() {
 #[test]
 fn every_link_leads_somewhere() {
     let mut pages = pages();
-    for page in ["README.md", "CONTRIBUTING.md", "python/README.md", "benches/README.md"] {
+    for page in
+        ["README.md", "CONTRIBUTING.md", "python/README.md", "plugs/interop/README.md", "benches/README.md"]
+    {
         pages.extend(files(page));
     }
     let all: usize = pages.iter().map(|(_, text)| links(text).len()).sum();

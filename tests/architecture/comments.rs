@@ -5,7 +5,8 @@ use crate::sources::{NONE, Source, files, planted};
 use crate::words::{badly_chosen, sentences};
 
 /// Folders whose comments hold the rules.
-const HELD: [&str; 10] = ["host", "io", "emulator", "lab", "cli", "python", "c", "examples", "fuzz", "tests"];
+const HELD: [&str; 11] =
+    ["host", "io", "emulator", "lab", "cli", "python", "c", "examples", "fuzz", "tests", "plugs"];
 
 /// The comments of a source as a page: each line keeps its number, and code is left blank.
 fn comments(text: &str) -> String {

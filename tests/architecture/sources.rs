@@ -42,7 +42,7 @@ pub fn all_rust() -> Vec<Source> {
     rust(
         &[
             "kernels", "emulator", "host", "io", "lab", "cli", "c", "python", "tests", "benches", "build.rs",
-            "fuzz",
+            "fuzz", "plugs",
         ]
         .map(|of| if exists(of) { of } else { "build.rs" }),
     )

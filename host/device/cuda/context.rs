@@ -2,6 +2,7 @@
 
 use super::driver::{Driver, Refusal, answer, driver, refused};
 use super::types::{self, CUcontext, CUdevice, CUdevice_attribute, CUstreamCaptureMode};
+use crate::device::Owner;
 use crate::error::Error;
 use std::ffi::c_int;
 use std::ops::Deref;
@@ -65,15 +66,16 @@ impl Gpu {
         // SAFETY: the driver writes one handle, which is released once, by `drop`.
         answer(unsafe { (self.driver.cuDevicePrimaryCtxRetain)(&mut handle, self.device) })
             .map_err(refused("making a context"))?;
-        Ok(Arc::new(Context { gpu: self, handle, is_borrowed: false }))
+        Ok(Arc::new(Context { gpu: self, handle, is_borrowed: false, owner: None }))
     }
 
     /// The GPU of a context of the caller, or of the one that this thread is bound to; and that
-    /// context.
+    /// context, which keeps its owner.
     ///
     /// # Safety
-    /// The context is one of the driver's, or null, and outlives the result.
-    pub unsafe fn of(context: CUcontext) -> Result<(Gpu, Arc<Context>), Error> {
+    /// The context is one of the driver's, or null. It lives as long as its owner or, without one,
+    /// outlives the result.
+    pub unsafe fn of(context: CUcontext, owner: Option<Owner>) -> Result<(Gpu, Arc<Context>), Error> {
         let driver = driver()?;
         // SAFETY: `cuInit` may be called at any time.
         answer(unsafe { (driver.cuInit)(0) }).map_err(refused("starting the CUDA driver"))?;
@@ -91,7 +93,7 @@ impl Gpu {
             });
         }
         let unknown = Gpu { driver, device: 0 };
-        let mut context = Context { gpu: unknown, handle, is_borrowed: true };
+        let mut context = Context { gpu: unknown, handle, is_borrowed: true, owner };
         let bound = context.bind().map_err(refused("binding a thread to a borrowed context"))?;
         let mut device = 0;
         // SAFETY: the thread is bound to the context, and the driver writes one number.
@@ -109,6 +111,8 @@ pub struct Context {
     handle: CUcontext,
     /// Whether it is the caller's, who destroys it.
     is_borrowed: bool,
+    /// Dropped after all objects in the context.
+    owner: Option<Owner>,
 }
 
 // SAFETY: the handle is the driver's. Any thread may call the driver's functions, also at the same
@@ -121,6 +125,11 @@ impl Context {
     /// The GPU's number.
     pub fn ordinal(&self) -> u32 {
         self.gpu.device as u32
+    }
+
+    /// The owner of a borrowed context, if it is known.
+    pub fn owner(&self) -> Option<&Owner> {
+        self.owner.as_ref()
     }
 
     /// Binds the calling thread to the context as long as the result lives.

@@ -18,6 +18,7 @@ pub use memory::Memory;
 pub use reads::First;
 pub use staging::Known;
 
+use super::Owner;
 use super::replay::{Act, Listing};
 use crate::error::Error;
 use code::Code;
@@ -92,10 +93,14 @@ impl Cuda {
     /// A GPU by a context and a stream of the caller.
     ///
     /// # Safety
-    /// See [`super::Device::from_stream`].
-    pub unsafe fn from_stream(context: CUcontext, stream: CUstream) -> Result<Self, Error> {
+    /// See [`super::Device::from_stream_of`].
+    pub unsafe fn from_stream(
+        context: CUcontext,
+        stream: CUstream,
+        owner: Option<Owner>,
+    ) -> Result<Self, Error> {
         // SAFETY: the caller's promise.
-        let (gpu, context) = unsafe { Gpu::of(context) }?;
+        let (gpu, context) = unsafe { Gpu::of(context, owner) }?;
         // SAFETY: as above.
         let stream = unsafe { Stream::borrow(&context, stream) };
         Self::with(gpu, context, stream)
@@ -166,6 +171,11 @@ impl Cuda {
     /// The handle of its stream.
     pub fn stream(&self) -> u64 {
         self.stream.handle() as u64
+    }
+
+    /// The owner of its context and its stream, if it is known.
+    pub fn owner(&self) -> Option<&Owner> {
+        self.context.owner()
     }
 
     /// Number of blocks with that many lanes that fill the GPU.
@@ -336,6 +346,11 @@ impl Cuda {
             }
         };
         body(&gpu, function).map_err(refused(E::NAME))
+    }
+
+    /// Waits for all work so far.
+    pub fn wait(&self) -> Result<(), Error> {
+        self.stream.wait(&self.bind()?).map_err(refused("waiting for the GPU"))
     }
 
     /// Moves an event after all work so far.
