@@ -59,7 +59,7 @@ pub struct LookArgs {
     pub time: f64,
 }
 
-/// From where the bodies are seen.
+/// The direction from which bodies are seen.
 #[derive(Args)]
 pub struct DirectionArgs {
     /// Look from this direction, of any length

@@ -1,4 +1,4 @@
-//! Where bodies are at both ends of a step. Equal places are stored once, so that a body at rest
+//! Places of bodies at both ends of a step. Equal places are stored once, so that a body at rest
 //! costs nothing in further frames.
 
 use super::page::About;

@@ -24,7 +24,7 @@ pub struct About {
     pub middle: [f64; 3],
     pub side: f64,
     pub at_rest: bool,
-    /// Where the eye is, and what is up.
+    /// The direction to the eye, and the one upwards.
     pub direction: [[f64; 3]; 2],
     pub columns: Columns,
     /// The names of the bodies.
@@ -79,7 +79,7 @@ enum Outcome {
     Untested { reason: String },
 }
 
-/// What the head has of a step or frame that was tested.
+/// A step or frame in the head that was tested.
 #[derive(Serialize)]
 pub struct Tested {
     pub rows: usize,

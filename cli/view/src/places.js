@@ -1,4 +1,4 @@
-// Where the vertices are, at a time of a step. Vertices go straight; those of a body that turns go
+// Places of the vertices at a time of a step. Vertices go straight; those of a body that turns go
 // on their arcs.
 
 import { Quaternion, Vector3 } from "three";

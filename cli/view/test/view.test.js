@@ -265,7 +265,7 @@ test("the mouse turns the bodies, edges and see-through change them, play moves 
 });
 
 test("a body that turns goes on its arc", async () => {
-  obj("bar.obj", "v 1 -0.5 0\nv 5 -0.5 0\nv 5 0.5 0\nf 1 2 3\nf 1 3 1\n");
+  obj("bar.obj", "v 1 -0.5 0\nv 5 0 0\nv 1 0.5 0\nf 1 2 3\n");
   obj("ground.obj", "v -5 -5 -1\nv 5 -5 -1\nv 0 5 -1\nf 1 2 3\n");
   const scene = obj(
     "turn.toml",
@@ -273,7 +273,6 @@ test("a body that turns goes on its arc", async () => {
 name = "bar </script><b>"
 mesh = "bar.obj"
 kind = "rigid"
-pivot = [1, 0, 0]
 poses = [{}, { turn = [0, 0, 4.71238898038469] }]
 [[body]]
 name = "ground"
@@ -282,7 +281,7 @@ kind = "fixed"
 `,
   );
   const opened = await Opened.open(written("turn.html", scene, "--view", "0,0,1", "--up", "0,1,0"));
-  assert.match(await opened.text("#bodies"), /bar <\/script><b>: 2 triangles/);
+  assert.match(await opened.text("#bodies"), /bar <\/script><b>: 1 triangle/);
   await opened.click("#bodies label:nth-child(2) input");
   const middle = async (time) => {
     await opened.slide("time", time);
@@ -299,12 +298,19 @@ kind = "fixed"
   const half = [await middle(1 / 3), await middle(2 / 3)];
   const arm = ends[0][0] - ends[1][0];
   const pivot = [ends[1][0], ends[0][1]];
-  const at = ([x, y]) => [x - pivot[0], y - pivot[1]].map((part) => Math.round(part / arm) + 0);
+  const at = ([x, y]) => [x - pivot[0], y - pivot[1]].map((part) => Math.round((10 * part) / arm) / 10 + 0);
   assert.deepEqual([...ends, ...half].flatMap(at), [1, 0, 0, -1, 0, 1, -1, 0]);
   assert(
     half.every(([, , size]) => Math.abs(size / ends[0][2] - 1) < 0.1),
     "it stays rigid",
   );
+  await opened.close();
+});
+
+test("bodies are seen from above, where up is towards the eye", async () => {
+  const mesh = obj("above.obj", over(1));
+  const opened = await Opened.open(written("above.html", mesh, "--view", "0,0,1"));
+  assert(where(await opened.shot(), isBody).size > 10_000);
   await opened.close();
 });
 
