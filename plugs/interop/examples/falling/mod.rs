@@ -11,7 +11,7 @@ pub const STEP: &str = include_str!("step.ptx");
 pub const FRAMES: usize = 20;
 
 /// Vertices of a side of a sheet.
-const SIDE: usize = 80;
+const SIDE: usize = 40;
 
 fn sheet(name: &str, height: impl Fn(f32, f32) -> f32) -> Result<Mesh, Error> {
     let at = |k: usize| k as f32 / (SIDE - 1) as f32;
@@ -25,7 +25,7 @@ fn sheet(name: &str, height: impl Fn(f32, f32) -> f32) -> Result<Mesh, Error> {
 /// A detector of a cloth and a floor, and the number of the cloth.
 pub fn detector(device: Device) -> Result<(Detector, BodyId), Error> {
     let mut scene = Scene::new();
-    let cloth = scene.add(Body::deformable(sheet("cloth", |x, y| 0.4 + 0.1 * x * y)?));
+    let cloth = scene.add(Body::deformable(sheet("cloth", |x, y| 0.2 + 0.1 * x * y)?));
     scene.add(Body::fixed(sheet("floor", |x, y| 0.05 * (9.0 * x).sin() * (7.0 * y).cos())?));
     Ok((Detector::new(device, scene)?, cloth))
 }
