@@ -8,7 +8,7 @@ import { join } from "node:path";
 import { PNG } from "pngjs";
 import puppeteer from "puppeteer-core";
 
-/** Width of the window beside the canvas, as page.css has it. */
+/** Width of the window next to the canvas, as page.css has it. */
 const ASIDE = 440;
 /** The canvas in the tests. */
 export const SIZE = [620, 500];
@@ -68,7 +68,7 @@ export function written(name, ...args) {
   return out;
 }
 
-/** An open page, with all faults and all files that it has asked for. */
+/** An open page, with all faults and all files that it has requested. */
 export class Opened {
   constructor(page) {
     Object.assign(this, { page, faults: [], requests: [] });
