@@ -1,7 +1,7 @@
 //! The rows of an answer as arrays of numbers: the page reads them by the names of their columns.
 
 use super::page::About;
-use nearmiss::contacts::{Contacts, Geometry, Kind, NearestTriangles, PairKind, Rows, Status};
+use nearmiss::contacts::{Contacts, Geometry, NearestTriangles, PairKind, Rows, Status};
 use nearmiss::query::{Query, QueryKind};
 use nearmiss::research::QueryExt;
 use nearmiss::scene::BodyId;
@@ -51,7 +51,7 @@ pub struct Arrays {
 impl Columns {
     /// The columns of a query's rows. `body_a` and `body_b` come first.
     pub fn of(query: &Query, bodies: usize) -> Columns {
-        let features = Names { kind: &["vf", "ee"], status: &STATUS };
+        let features = Names { kind: &["vf", "ee", "ev", "vv"], status: &STATUS };
         let meetings = Names { kind: &["crossing", "point", "segment", "overlap"], ..Names::default() };
         // Pairs of a solver that can be wrong may have no common point.
         let is_exact = query.solver().is_certain();
@@ -110,14 +110,14 @@ impl About {
             Rows::Contacts(all) => {
                 for (at, row) in all.iter().enumerate() {
                     to.words.extend(numbers(row.bodies));
-                    to.words.extend([kind(row.kind), row.feature_a, row.feature_b, status(row.status)]);
+                    to.words.extend([row.kind as u32, row.feature_a, row.feature_b, status(row.status)]);
                     features(&mut to, at, &[row.toi, row.toi_upper]);
                 }
             }
             Rows::Near(all) => {
                 for (at, row) in all.iter().enumerate() {
                     to.words.extend(numbers(row.bodies));
-                    to.words.extend([kind(row.kind), row.feature_a, row.feature_b]);
+                    to.words.extend([row.kind as u32, row.feature_a, row.feature_b]);
                     let distance = geometry.contacts().get(at).map_or(f64::NAN, |own| own.distance);
                     features(&mut to, at, &[distance]);
                 }
@@ -139,13 +139,6 @@ impl About {
 
 fn numbers(bodies: [BodyId; 2]) -> [u32; 2] {
     bodies.map(|body| body.index() as u32)
-}
-
-fn kind(kind: Kind) -> u32 {
-    match kind {
-        Kind::Vf => 0,
-        Kind::Ee => 1,
-    }
 }
 
 fn meeting(kind: PairKind) -> u32 {

@@ -127,7 +127,7 @@ impl<'a> Page<'a> {
         let mut template = String::new();
         GzDecoder::new(TEMPLATE).read_to_string(&mut template).map_err(|e| e.to_string())?;
         let (head, tail) = template.split_once(DATA).ok_or("the template has no place for data")?;
-        let sizes = bodies.iter().map(|body| [body.vertex_count(), body.face_count()]).collect();
+        let sizes = bodies.iter().map(|body| [body.vertex_count(), body.element_count()]).collect();
         let out = Counted { out, bytes: 0 };
         let mut page = Page { about, out, sizes, told: Vec::new(), tail: tail.to_owned() };
         page.put(head)?;

@@ -20,7 +20,16 @@ export function features(scene, row) {
   const bodies = [scene.bodies[row.body_a], scene.bodies[row.body_b]];
   if ("vertex_0" in row) {
     const [a, b, c, d] = [0, 1, 2, 3].map((k) => row[`vertex_${k}`]);
-    return scene.names.kind[row.kind] === "vf" ? [[[a]], [[b, c, d]]] : [[[a, b]], [[c, d]]];
+    switch (scene.names.kind[row.kind]) {
+      case "vf":
+        return [[[a]], [[b, c, d]]];
+      case "ee":
+        return [[[a, b]], [[c, d]]];
+      case "ev":
+        return [[[a, b]], [[c]]];
+      default:
+        return [[[a]], [[b]]];
+    }
   }
   if ("tri_a" in row) {
     return [row.tri_a, row.tri_b].map((triangle, k) => [face(bodies[k].firstFace + triangle)]);
@@ -50,7 +59,7 @@ export function isOf(scene, row, triangle) {
 export function nearest(scene, row, places) {
   if ("weight_0" in row) {
     const ends =
-      scene.names.kind[row.kind] === "vf"
+      ["vf", "vv"].includes(scene.names.kind[row.kind])
         ? [[0], [1, 2, 3]]
         : [
             [0, 1],
