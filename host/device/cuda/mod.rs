@@ -348,11 +348,6 @@ impl Cuda {
         body(&gpu, function).map_err(refused(E::NAME))
     }
 
-    /// Waits for all work so far.
-    pub fn wait(&self) -> Result<(), Error> {
-        self.stream.wait(&self.bind()?).map_err(refused("waiting for the GPU"))
-    }
-
     /// Moves an event after all work so far.
     pub fn mark(&self, event: &Event) -> Result<(), Error> {
         event.0.record(&self.bind()?, &self.stream).map_err(refused("recording an event"))

@@ -18,6 +18,11 @@ pub struct First<'a> {
 }
 
 impl Cuda {
+    /// Waits for all work so far.
+    pub fn wait(&self) -> Result<(), Error> {
+        self.stream.wait(&self.bind()?).map_err(refused("waiting for the GPU"))
+    }
+
     /// Copies bytes from the GPU through page-locked memory; waits for all work before, unless they
     /// were read ahead.
     pub fn read(&self, memory: &Memory, bytes: &mut [u8]) -> Result<(), Error> {
