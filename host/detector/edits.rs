@@ -133,7 +133,7 @@ impl Detector {
             let others: usize = self.scene.bodies().iter().map(count).sum();
             others - old.map_or(0, count) + count(new)
         };
-        fits(all(Body::face_count), all(Body::vertex_count))
+        fits(all(Body::element_count), all(Body::vertex_count))
     }
 
     /// Drops all that depends on the bodies: the next frame builds it again.

@@ -46,7 +46,7 @@ impl Layouts {
             return Ok(layout.clone());
         }
         let (bodies, looks) = (scene.bodies(), device.looks());
-        let triangles: usize = bodies.iter().map(Body::face_count).sum();
+        let triangles: usize = bodies.iter().map(Body::element_count).sum();
         fits(triangles, bodies.iter().map(Body::vertex_count).sum())?;
         memory::require("trees and lists", triangles as u64 * OF_A_TRIANGLE)?;
         // One with features is preferred: they take longest to make.

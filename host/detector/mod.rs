@@ -97,7 +97,7 @@ impl Detector {
         start_threads()?;
         scene.bodies().iter().try_for_each(Body::validate)?;
         let all = |count: fn(&Body) -> usize| scene.bodies().iter().map(count).sum();
-        fits(all(Body::face_count), all(Body::vertex_count))?;
+        fits(all(Body::element_count), all(Body::vertex_count))?;
         Ok(Detector {
             device: device.for_one(),
             scene,

@@ -59,22 +59,22 @@ def test_a_step_of_threads_is_safe():
     start, end, faces, edges, points = random_threads(2)
     detector = nm.Detector(nm.Body(start, faces, edges=edges, points=points), device=CPU)
     detector.update({0: (start, end)})
-    found = detector.continuous(min_separation=0.01)
+    found = detector.continuous(min_separation=0.05)
     assert set(found.kind) == set(KINDS)
     geometry = detector.geometry(found)
     rows = found.kind == nm.Kind.EDGE_VERTEX
     assert (geometry.vertices[rows, 2] == geometry.vertices[rows, 3]).all()
     assert (np.sort(geometry.vertices[rows, :2]) == np.sort(edges[found.feature_a[rows]])).all()
     assert np.allclose(geometry.signed_weights.sum(axis=1), 0, atol=1e-12)
-    assert detector.earliest(min_separation=0.01).toi == found.toi.min()
+    assert detector.earliest(min_separation=0.05).toi == found.toi.min()
 
 
 def test_numbers_are_those_of_the_list():
     low = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0], [1, 1, 1], [9, 1, 1], [9, 2, 1]], float)
     faces = [[0, 1, 2], [3, 4, 5]]
-    plain = nm.Detector(nm.Body(low, faces), device=CPU).near(1.2)
+    plain = nm.Detector(nm.Body(low, faces), device=CPU).near(2)
     numbers = [[4, 5], [0, 1], [5, 3], [2, 1], [3, 4], [0, 2]]
-    by_list = nm.Detector(nm.Body(low, faces, edges=numbers), device=CPU).near(1.2)
+    by_list = nm.Detector(nm.Body(low, faces, edges=numbers), device=CPU).near(2)
     table = np.array([[1, 0], [2, 0], [2, 1], [4, 3], [5, 3], [5, 4]])
 
     def named(found, edges):

@@ -189,7 +189,7 @@ arguments! {
         merged: Span<u64>,
         /// First vertex, triangle and edge of each body, and the totals; not read for one body.
         bodies: Span<u32>,
-        /// What triangles stand for; empty if all are faces.
+        /// The meaning of each triangle; empty if all are faces.
         elements: Span<Element>,
         /// Number of vertices, or of triangles: the bin of the first edge.
         vertices: u32,

@@ -66,7 +66,7 @@ impl<V> Node<V> {
     }
 }
 
-/// What a triangle of a scene stands for.
+/// The meaning of a triangle of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C, align(8))]
 pub struct Element {

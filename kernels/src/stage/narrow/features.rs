@@ -12,7 +12,8 @@
 //!          only at its two owners.
 //!          None is lost: a feature is part of its owner. So features within the gap bring their
 //!          owners within the gap.
-//!          An edge of no face, and a point, are triangles too: see [`vertices_that_meet`].
+//!          An edge of no face, and a point, are triangles too. Their vertices are tested with few
+//!          (`vertices_that_meet`).
 //!          That pair of triangles, adjacent or not, is in the list.
 //!          Boxes are those of the time in which the boxes around the two triangles, moving with
 //!          them, overlap.
