@@ -13,9 +13,9 @@ pub enum NearmissKind {
     NEARMISS_VF = 0,
     /// Both features are edges. Numbers ascend by (larger vertex, smaller vertex), or are as given.
     NEARMISS_EE = 1,
-    /// Feature a is an edge of no triangle, feature b a vertex of no triangle.
+    /// Feature a is an edge of no triangle, feature b a vertex.
     NEARMISS_EV = 2,
-    /// Both features are points: vertices of no triangle and no edge.
+    /// Both features are vertices, one of them a point: of no triangle and no edge.
     NEARMISS_VV = 3,
 }
 

@@ -54,9 +54,9 @@ pub enum Kind {
     /// Two edges, numbered by (larger vertex, smaller vertex), ascending; or as
     /// [given](crate::Mesh::with_edges).
     Ee = 1,
-    /// An edge and a vertex, both of no face. The edge is `feature_a`, whichever body has it.
+    /// An edge of no face and a vertex. The edge is `feature_a`, whichever body has it.
     Ev = 2,
-    /// Two points: vertices of no face and no edge.
+    /// Two vertices, one of them a point: of no face and no edge.
     Vv = 3,
 }
 

@@ -39,8 +39,8 @@ pub struct DeviceAnswer {
     /// device has put them [in order](DeviceAnswer::is_ordered). Otherwise they have two:
     /// vertex/face pairs, then edge/edge pairs.
     pub lists: Vec<DeviceList>,
-    /// Whether entries are in canonical order: on a GPU, if there are any rows, and if no body has
-    /// edges of no face or points.
+    /// Whether entries are in canonical order: on a GPU, if there are any rows. Feature pairs are not
+    /// if a body has edges of no face or points.
     pub is_ordered: bool,
     /// Address of the [`FrameStatus`]: the number of entries, and whether the answer is complete. Its
     /// counts, those of crossings included, are usable only if `short` and `invalid` are 0.

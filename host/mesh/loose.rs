@@ -51,18 +51,18 @@ impl Elements {
             return all;
         }
         let mut used = vec![false; vertex_count];
-        let mut sides = HashSet::new();
+        let mut listed: HashSet<[u32; 2]> = loose.edges.iter().map(|&edge| ordered(edge)).collect();
         for face in &all.corners {
             face.iter().for_each(|&vertex| used[vertex as usize] = true);
-            if !loose.edges.is_empty() {
-                sides.extend([0, 1, 2].map(|k| ordered([face[k], face[(k + 1) % 3]])));
+            if !listed.is_empty() {
+                [0, 1, 2].iter().for_each(|&k| drop(listed.remove(&ordered([face[k], face[(k + 1) % 3]]))));
             }
         }
         // A weld may leave an edge with one vertex: that is a point.
         let (points, edges): (Vec<_>, Vec<_>) = loose.edges.iter().partition(|[a, b]| a == b);
         for [a, b] in edges.into_iter().map(ordered) {
             [a, b].iter().for_each(|&vertex| used[vertex as usize] = true);
-            if sides.insert([a, b]) {
+            if listed.remove(&[a, b]) {
                 all.corners.push([a, b, b]);
             }
         }

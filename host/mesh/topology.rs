@@ -51,7 +51,7 @@ impl Topology {
     pub(crate) fn within(faces: &[[u32; 3]], vertex_count: usize, looks: &Looks) -> Option<Topology> {
         let mut topology = Topology::of_edges(faces, vertex_count, looks)?;
         let counts = [vertex_count as u32, topology.edges.len() as u32];
-        topology.owners = owners((faces, faces.len()), &topology.face_edges, counts, looks)?;
+        topology.owners = owners(faces, &topology.face_edges, counts, looks)?;
         Some(topology)
     }
 
@@ -96,7 +96,7 @@ impl Topology {
         let mut topology = Topology::of_edges(elements, body.vertex_count(), looks)?;
         topology.number(body.edges());
         let counts = [body.vertex_count() as u32, topology.edges.len() as u32];
-        topology.owners = owners((elements, body.face_count()), &topology.face_edges, counts, looks)?;
+        topology.owners = owners(elements, &topology.face_edges, counts, looks)?;
         Some(topology)
     }
 
@@ -133,21 +133,16 @@ impl Topology {
 }
 
 /// The owner bits of each face, from its vertices and edges and how many of these there are. A face
-/// of three times [`NO_EDGE`] in both lists owns nothing. Those from number `count` on are edges of no
-/// face and points: they own no vertex that a face has. `None` if the work ended early.
+/// of three times [`NO_EDGE`] in both lists owns nothing. `None` if the work ended early.
 pub(crate) fn owners(
-    (faces, count): (&[[u32; 3]], usize),
+    faces: &[[u32; 3]],
     face_edges: &[[u32; 3]],
     [vertices, edges]: [u32; 2],
     looks: &Looks,
 ) -> Option<Vec<u32>> {
     let mut owners = vec![0; faces.len()];
-    own(&mut owners, (face_edges, 3), &mut vec![false; edges as usize], &[|_| true], looks)?;
-    let mut is_owned = vec![false; vertices as usize];
-    let ((faces, others), (of_faces, of_others)) = (faces.split_at(count), owners.split_at_mut(count));
-    for (faces, owners) in [(faces, of_faces), (others, of_others)] {
-        own(owners, (faces, 0), &mut is_owned, &[|owned| owned != 0, |_| true], looks)?;
-    }
+    own(&mut owners, (face_edges, 3), edges as usize, &[|_| true], looks)?;
+    own(&mut owners, (faces, 0), vertices as usize, &[|owned| owned != 0, |_| true], looks)?;
     Some(owners)
 }
 
@@ -198,15 +193,16 @@ fn by_larger_vertex(faces: &[[u32; 3]], vertex_count: usize, looks: &Looks) -> O
     Some((starts, corners))
 }
 
-/// Gives each vertex or edge of faces that is not owned an owner, and sets its bit from `shift` on. In
+/// Gives each of `count` vertices or edges of faces an owner, and sets its bit from `shift` on. In
 /// each of `stages`, faces that may own get three at once, then two, then one.
 fn own(
     owners: &mut [u32],
     (faces, shift): (&[[u32; 3]], u32),
-    is_owned: &mut [bool],
+    count: usize,
     stages: &[fn(u32) -> bool],
     looks: &Looks,
 ) -> Option<()> {
+    let mut is_owned = vec![false; count];
     for (may_own, number) in stages.iter().flat_map(|may_own| [3, 2, 1].map(|number| (may_own, number))) {
         for piece in pieces(faces, looks) {
             let (first, piece) = piece?;

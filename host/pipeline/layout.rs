@@ -168,9 +168,7 @@ impl Layout {
             let faces = rows(&self.faces, ends[0].vertex);
             let face_edges = rows(&features.face_edges, ends[0].edge);
             let counts = [ends[1].vertex - ends[0].vertex, ends[1].edge - ends[0].edge];
-            let face_count = own.clone().filter(|&face| self.kind(face) == Kind::Vf).count();
-            let owners = owners((&faces, face_count), &face_edges, counts, looks)?;
-            features.owners[own.clone()].copy_from_slice(&owners);
+            features.owners[own.clone()].copy_from_slice(&owners(&faces, &face_edges, counts, looks)?);
         }
         self.features = Arc::new(features);
         Some(self)

@@ -350,6 +350,9 @@ impl Body {
         let Loose { edges, points } = &self.loose;
         let indices = self.faces().iter().flatten().chain(edges.iter().flatten()).chain(points);
         indices.for_each(|i| hash.update(&i.to_le_bytes()));
+        if !self.loose.is_empty() {
+            [edges.len(), points.len()].iter().for_each(|n| hash.update(&(*n as u64).to_le_bytes()));
+        }
         for frame in std::iter::once(&self.positions_t0).chain(&self.positions_t1) {
             match frame {
                 Positions::F32(points) => points.iter().flatten().for_each(|x| hash.update(&x.to_le_bytes())),

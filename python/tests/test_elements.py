@@ -34,14 +34,15 @@ def test_threads_and_points_come_near():
     assert set(near.kind) == set(KINDS)
     rows = {kind: near.kind == kind for kind in KINDS}
     pairs = {kind: list(zip(near.feature_a[own].tolist(), near.feature_b[own].tolist())) for kind, own in rows.items()}
-    both = [(p, q) for p in points for q in points if p < q and np.linalg.norm(start[p] - start[q]) <= 0.1]
+    used = np.concatenate([faces.ravel(), np.unique(edges), points])
+    others = sorted({tuple(sorted((p, q))) for p in points for q in used if p != q})
+    both = [(p, q) for p, q in others if np.linalg.norm(start[p] - start[q]) <= 0.1]
     assert pairs[nm.Kind.VERTEX_VERTEX] == both
     ends = [edges[edge] for edge in range(len(edges))]
-    others = np.concatenate([np.unique(edges), points])
     wanted = []
     for at, (a, b) in enumerate(ends):
         along = start[b] - start[a]
-        for vertex in others:
+        for vertex in used:
             if vertex in (a, b):
                 continue
             t = np.clip((start[vertex] - start[a]) @ along / (along @ along), 0, 1)

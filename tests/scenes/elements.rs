@@ -109,13 +109,14 @@ impl Given {
             let [a, b] = [a, b].map(|edge| number(all[edge as usize]));
             return Some(((Kind::Ee, [a.min(b), a.max(b)]), a > b));
         }
-        let of_a_face = self.faces.iter().any(|face| face.contains(&a));
         let row = match (b as usize).checked_sub(faces) {
             None => Some((Kind::Vf, [a, b])),
-            Some(at) if at < edges.len() => (!of_a_face).then(|| (Kind::Ev, [number(edges[at]), a])),
+            Some(at) if at < edges.len() => Some((Kind::Ev, [number(edges[at]), a])),
             Some(at) => {
                 let point = points[at - edges.len()];
-                (points.contains(&a) && a < point).then_some((Kind::Vv, [a, point]))
+                // Two points have one row.
+                let is_second = points.contains(&a) && a > point;
+                (!is_second).then_some((Kind::Vv, [a.min(point), a.max(point)]))
             }
         };
         row.map(|row| (row, false))
@@ -153,8 +154,7 @@ fn queries() -> Vec<Query> {
     ]
 }
 
-/// Rows are those of faces that repeat a vertex, under other names: vertices of faces and of edges meet
-/// edges and points in other rows.
+/// Rows are those of faces that repeat a vertex, under other names; those of two points once.
 #[test]
 fn elements_answer_as_faces_that_repeat_a_vertex() {
     let mut kinds = BTreeMap::new();
@@ -208,18 +208,6 @@ fn near_rows_are_all_that_are_within() {
         let planted = other.iter().find(|(kind, _)| *kind == Kind::Vv).copied().expect("two points");
         other.remove(&planted);
         assert_eq!(fault(&other), Some(planted));
-        // Each vertex that is near an element has a row with it: nothing is lost by what has no row.
-        let corners: Vec<BTreeSet<u32>> = {
-            let near = loose.query(&Near::within(distance)).expect("near");
-            let all = loose.geometry(&near).expect("geometry");
-            all.iter().map(|of| of.vertices.into_iter().collect()).collect()
-        };
-        let faces = given.as_faces().faces;
-        for (_, _, [vertex, face]) in within.keys().filter(|(kind, ..)| *kind == "vf") {
-            let element = &faces[*face as usize];
-            let has = |all: &BTreeSet<u32>| all.contains(vertex) && element.iter().all(|v| all.contains(v));
-            assert!(corners.iter().any(has), "vertex {vertex}, {element:?}");
-        }
     }
 }
 
@@ -320,16 +308,33 @@ fn bodies_of_all_kinds_have_threads() {
         near.iter().map(|row| (row.kind, row.bodies.map(|body| body.index()))).collect::<Vec<_>>()
     };
     let vf = (Kind::Vf, [1, 0]);
-    let ee = (Kind::Ee, [0, 1]);
-    // Both ends and the point are over the sheet; the thread is within 1.2 of its three edges.
-    assert_eq!(near(vec![Body::fixed(sheet(0.0)), Body::deformable(thread(0.5))], 0.6), [vf; 3]);
+    let (ee, vv) = ((Kind::Ee, [0, 1]), (Kind::Vv, [0, 1]));
+    // Both ends and the point are over the sheet, the point over a corner; the thread is within 1.2 of
+    // its three edges.
+    assert_eq!(near(vec![Body::fixed(sheet(0.0)), Body::deformable(thread(0.5))], 0.6), [vf, vf, vf, vv]);
     let thick = Body::rigid(thread(0.5)).with_thickness(0.3);
-    assert_eq!(near(vec![Body::fixed(sheet(0.0)), thick], 0.3), [vf; 3]);
+    assert_eq!(near(vec![Body::fixed(sheet(0.0)), thick], 0.3), [vf, vf, vf, vv]);
     let wide = near(vec![Body::fixed(sheet(0.0)), Body::rigid(thread(0.5))], 1.2);
-    assert_eq!(wide, [vf, vf, vf, ee, ee, ee]);
+    assert_eq!(wide, [vf, vf, vf, ee, ee, ee, vv]);
     let both = near(vec![Body::rigid(thread(0.0)), Body::deformable(thread(0.5))], 0.6);
     let ev = [(Kind::Ev, [0, 1]), (Kind::Ev, [0, 1]), (Kind::Ev, [1, 0]), (Kind::Ev, [1, 0])];
     assert_eq!(both, [[(Kind::Ee, [0, 1])].as_slice(), &ev, &[(Kind::Vv, [0, 1])]].concat());
+
+    // A face of one vertex, which has no edge, and one whose edge shares a vertex with the thread.
+    let dot = Mesh::new("dot", Positions::F32(vec![[1.5, 1.1, 0.0]]), vec![[0, 0, 0]]).expect("valid");
+    let dotted = near(vec![Body::deformable(thread(0.0)), Body::deformable(dot)], 0.2);
+    assert_eq!(dotted, [(Kind::Ev, [0, 1])]);
+    let bent = Positions::F32(vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 0.1, 0.0]]);
+    let bent = Mesh::new("bent", bent, vec![[0, 1, 1]]).and_then(|mesh| mesh.with_edges(vec![[1, 2]]));
+    assert!(near(vec![Body::deformable(bent.expect("valid"))], 0.2).contains(&(Kind::Ev, [0, 0])));
+    // The ball around a thick vertex of a face holds a part of the line.
+    let thick = [0.5, 0.0, 0.0];
+    let face = Positions::F32(vec![[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, -9.0, 0.0]]);
+    let face = Body::deformable(Mesh::new("face", face, vec![[0, 1, 2]]).expect("valid"));
+    let line = Positions::F32(vec![[-9.0, 0.6, 0.0], [9.0, 0.2, 0.0]]);
+    let line = Mesh::new("line", line, Vec::new()).and_then(|mesh| mesh.with_edges(vec![[0, 1]]));
+    let bodies = vec![face.with_thickness(thick.to_vec()), Body::deformable(line.expect("valid"))];
+    assert!(near(bodies, 0.0).contains(&(Kind::Ev, [1, 0])));
 
     // A thread turns onto the sheet: its far end goes through it.
     let mut scene = Scene::new();
@@ -348,8 +353,8 @@ fn bodies_of_all_kinds_have_threads() {
     let exclusions = Exclusions { faces: vec![0], ..Exclusions::default() };
     detector.exclude(turns, exclusions).expect("excluded");
     let left = detector.query(&Near::within(0.6)).expect("near");
-    assert_eq!(left.iter().map(|row| (row.kind, row.feature_a)).collect::<Vec<_>>(), [(Kind::Vf, 0)]);
-    assert_eq!(left[0].bodies, [turns, ground]);
+    let rows: Vec<_> = left.iter().map(|row| (row.kind, row.bodies)).collect();
+    assert_eq!(rows, [(Kind::Vf, [turns, ground]), (Kind::Vv, [ground, turns])]);
 }
 
 /// Pairs of a discrete query have the numbers of elements.

@@ -18,7 +18,7 @@ pub fn features(layout: &Layout, kind: Kind, [a, b]: [u32; 2]) -> Features {
         Kind::Vf => [vertex(a), layout.locate(b, |at| at.triangle)],
         Kind::Ee => [edge(a), edge(b)],
         Kind::Ev => [edge(number), vertex(a)],
-        Kind::Vv => [vertex(a), vertex(number)],
+        Kind::Vv => [vertex(a.min(number)), vertex(a.max(number))],
     };
     (kind, [of_a, of_b], [a, b])
 }

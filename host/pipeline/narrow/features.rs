@@ -37,12 +37,8 @@ impl Features {
     pub fn new(device: &Device, layout: &Layout, [vf, ee]: [usize; 2]) -> Result<Self, Error> {
         let topology = &layout.features;
         let facet = |(at, ((&corners, &edges), &owned)): (usize, ((_, _), &u32))| {
-            let kind = match layout.kind(at) {
-                Kind::Vf | Kind::Ee => 0,
-                Kind::Ev => Facet::EDGE,
-                Kind::Vv => Facet::POINT,
-            };
-            Facet { corners, owned: owned | kind, edges, pad: 0 }
+            let is_point = if layout.kind(at) == Kind::Vv { Facet::POINT } else { 0 };
+            Facet { corners, owned: owned | is_point, edges, pad: 0 }
         };
         let triangles = layout.faces.iter().zip(&topology.face_edges).zip(&topology.owners);
         let facets: Vec<_> = triangles.enumerate().map(facet).collect();

@@ -122,6 +122,9 @@ fn wanted<T: Ordered>(layout: &Layout, lists: [&[T]; 2]) -> (Vec<T::Row>, Vec<T>
             (true, _) => (code::EDGE_EDGE, [x, y]),
             (false, None) => (code::VERTEX_FACE, [x, y]),
             (false, Some((code::EDGE_VERTEX, edge))) => (code::EDGE_VERTEX, [edge, x]),
+            (false, Some((code::VERTEX_VERTEX, point))) => {
+                (code::VERTEX_VERTEX, [x.min(point), x.max(point)])
+            }
             (false, Some((kind, number))) => (kind, [x, number]),
         }
     };

@@ -109,8 +109,8 @@ const _: () = assert!(size_of::<Begun>() == 16);
 pub struct Facet {
     /// Its vertices.
     pub corners: [u32; 3],
-    /// Which vertices (bits 0 to 2) and edges (bits 3 to 5) it stands for; and whether it is an edge of
-    /// no face ([`Facet::EDGE`]) or a point ([`Facet::POINT`]).
+    /// Which vertices (bits 0 to 2) and edges (bits 3 to 5) it stands for; and whether it is a point
+    /// ([`Facet::POINT`]).
     pub owned: u32,
     /// Its edges; edge k joins corners k and k + 1.
     pub edges: [u32; 3],
@@ -120,10 +120,8 @@ pub struct Facet {
 const _: () = assert!(size_of::<Facet>() == 32);
 
 impl Facet {
-    /// Bit of [`Facet::owned`] for an edge of no face: its corners are a, b and b.
-    pub const EDGE: u32 = 1 << 6;
     /// Bit of [`Facet::owned`] for a point: its corners are one vertex.
-    pub const POINT: u32 = 1 << 7;
+    pub const POINT: u32 = 1 << 6;
 }
 
 /// A pair of nodes still to be traversed: a query's leaf and the two children of a node.

@@ -9,9 +9,9 @@ pub mod code {
     pub const VERTEX_FACE: u8 = 0;
     /// Two edges.
     pub const EDGE_EDGE: u8 = 1;
-    /// An edge of no face, and a point.
+    /// An edge of no face, and a vertex.
     pub const EDGE_VERTEX: u8 = 2;
-    /// Two points.
+    /// Two vertices, one of them a point.
     pub const VERTEX_VERTEX: u8 = 3;
     /// A contact of a solver that can be wrong.
     pub const UNVERIFIED: u8 = 0;

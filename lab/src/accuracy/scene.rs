@@ -69,7 +69,7 @@ impl Scene {
             };
             return Ok(scene);
         }
-        scene.edges = Topology::new(scene.body.faces(), scene.body.vertex_count()).edges;
+        scene.edges = Topology::of(&scene.body).edges;
         let finest = Certified { tolerance: Some(FINEST * edge), ..Certified::by(CertifiedPrecision::F64) };
         let found = scene.answer(device, Continuous::by(finest).into())?;
         let bounds = |c: &Contact| Truth::Meet { not_before: c.toi, by: c.toi_upper };

@@ -11,9 +11,9 @@ class Kind(IntEnum):
     EDGE_EDGE = 1
     """Both features are edges."""
     EDGE_VERTEX = 2
-    """Feature a is an edge of no face, feature b a vertex of no face."""
+    """Feature a is an edge of no face, feature b a vertex."""
     VERTEX_VERTEX = 3
-    """Both features are points: vertices of no face and no edge."""
+    """Both features are vertices, one of them a point: of no face and no edge."""
 
 
 class PairKind(IntEnum):

@@ -12,8 +12,7 @@
 //!          only at its two owners.
 //!          None is lost: a feature is part of its owner. So features within the gap bring their
 //!          owners within the gap.
-//!          An edge of no face, and a point, are triangles too. Their vertices are tested with few
-//!          (`vertices_that_meet`).
+//!          An edge of no face, and a point, are triangles too. Two points are tested once.
 //!          That pair of triangles, adjacent or not, is in the list.
 //!          Boxes are those of the time in which the boxes around the two triangles, moving with
 //!          them, overlap.
@@ -55,28 +54,17 @@ fn common(p: &Facet, q: &Facet) -> [u32; 3] {
     [row(0), row(1), row(2)]
 }
 
-/// The owned bits of two triangles. An edge of no face meets vertices of no face alone, a point other
-/// points alone, once. Other vertices are tested with them in another way: a vertex of a face by the
-/// face or its edges, a vertex of an edge by the edge.
-#[inline(always)]
-fn vertices_that_meet(p: &Facet, q: &Facet) -> [u32; 2] {
-    let of = |own: &Facet, other: &Facet| {
-        let meets = if other.owned < Facet::POINT {
-            own.owned >= Facet::EDGE
-        } else {
-            own.owned >= Facet::POINT && own.corners[0] < other.corners[0]
-        };
-        if meets || other.owned < Facet::EDGE { own.owned } else { own.owned & !7 }
-    };
-    if (p.owned | q.owned) < Facet::EDGE { [p.owned, q.owned] } else { [of(p, q), of(q, p)] }
-}
-
 /// Bits of the tests that two triangles own. 0 to 2: a vertex of p and q. 3 to 5: a vertex of q and
 /// p. 6 + 3 i + j: edge i of p and edge j of q. Features that share a vertex have no bit.
 #[inline(always)]
 pub(super) fn owned(p: &Facet, q: &Facet) -> u32 {
     let rows = common(p, q);
-    let [of_p, of_q] = vertices_that_meet(p, q);
+    let (mut of_p, mut of_q) = (p.owned, q.owned);
+    if of_p & of_q & Facet::POINT != 0 {
+        // Two points are tested once.
+        let of_later = if p.corners[0] < q.corners[0] { &mut of_q } else { &mut of_p };
+        *of_later &= !7;
+    }
     let mut mask = of_q & 7 & !(rows[0] | rows[1] | rows[2]);
     mask <<= 3;
     for i in 0..3 {

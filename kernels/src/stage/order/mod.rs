@@ -78,8 +78,8 @@ impl Contacts {
                 Name { kind, of, features: [number, x], bin: further + number }
             }
             code::VERTEX_VERTEX => {
-                let of = [Feature::VERTEX; 2];
-                Name { kind, of, features: [x, number], bin: further + args.edges + x }
+                let (of, first) = ([Feature::VERTEX; 2], x.min(number));
+                Name { kind, of, features: [first, x.max(number)], bin: further + args.edges + first }
             }
             _ => Name { kind, of: Feature::OF_FACE, features: [x, number], bin: x },
         }
