@@ -100,12 +100,11 @@ enum NearmissKind
  {
     // Feature a is a vertex, feature b a face.
     NEARMISS_VF = 0,
-    // Both features are edges, numbered in ascending order of (larger vertex, smaller vertex), or as
-    // given.
+    // Both features are edges. Numbers ascend by (larger vertex, smaller vertex), or are as given.
     NEARMISS_EE = 1,
-    // Feature a is an edge of no triangle, feature b a vertex of no triangle.
+    // Feature a is an edge of no triangle, feature b a vertex.
     NEARMISS_EV = 2,
-    // Both features are points: vertices of no triangle and no edge.
+    // Both features are vertices, one of them a point: of no triangle and no edge.
     NEARMISS_VV = 3,
 };
 #ifndef __cplusplus
@@ -193,10 +192,10 @@ enum NearmissEntries
  {
     // `NearmissDevicePair`: two triangles.
     NEARMISS_TRIANGLE_PAIRS = 0,
-    // `NearmissDeviceHit`: a vertex and a face, or two edges, and their times of contact. An
+    // `NearmissDeviceHit`: a vertex and a triangle, or two edges, and their times of contact. An
     // earliest query has none.
     NEARMISS_CONTACTS = 1,
-    // `NearmissDeviceNearHit`: a vertex and a face, or two edges, and their nearest points.
+    // `NearmissDeviceNearHit`: a vertex and a triangle, or two edges, and their nearest points.
     NEARMISS_NEAR_PAIRS = 2,
     // `NearmissDeviceNearest`: two triangles, their distance and nearest points.
     NEARMISS_NEAREST = 3,
