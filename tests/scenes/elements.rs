@@ -1,9 +1,9 @@
 //! Edges of no face and points: against exact distances, and against the same scene whose edges and
 //! points are faces that repeat a vertex.
 
-use nearmiss::contacts::{Kind, TrianglePair};
+use nearmiss::contacts::{Kind, Status, TrianglePair};
 use nearmiss::mesh::{Mesh, Positions, Topology};
-use nearmiss::research::{BoundingVolume, BroadPhase, Certified, QueryExt, WithSolver};
+use nearmiss::research::{BoundingVolume, BroadPhase, Certified, CertifiedPrecision, QueryExt, WithSolver};
 use nearmiss::scene::{BodyId, Exclusions, Pose, PoseStep};
 use nearmiss::{Body, Continuous, Detector, Earliest, Near, Query, Scene};
 use nearmiss_lab::oracle::near::{Shape, all_within};
@@ -262,6 +262,22 @@ fn the_way_does_not_change_an_answer() {
         for order in ORDERS {
             assert_eq!(ask(sanitizer(order), vec![body()], query).hash(), truth.hash(), "{order:?}");
         }
+    }
+}
+
+/// Each certified solver lists every pair that another one proves to meet.
+#[test]
+fn no_certified_solver_misses_what_another_proves() {
+    for (count, seed) in [(500, 1), (1_000, 1), (300, 3)] {
+        let mut detector = detector(threads(count, seed).expect("threads"));
+        let lists = CertifiedPrecision::ALL.map(|precision| {
+            let by = Continuous::by(Certified { precision, ..Certified::default() });
+            rows_of(&mut detector, by.into()).into_iter().collect::<Rows>()
+        });
+        let proven = lists.iter().flatten().filter(|(_, numbers)| numbers[2] == Status::Certified as u64);
+        let missed = proven.filter(|(row, _)| lists.iter().any(|list| !list.contains_key(*row)));
+        assert_eq!(missed.map(|(row, _)| row).next(), None, "{count}, {seed}");
+        assert!(lists[0].len() > 50);
     }
 }
 
