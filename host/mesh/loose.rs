@@ -55,7 +55,9 @@ impl Elements {
         for face in &all.corners {
             face.iter().for_each(|&vertex| used[vertex as usize] = true);
             if !listed.is_empty() {
-                [0, 1, 2].iter().for_each(|&k| drop(listed.remove(&ordered([face[k], face[(k + 1) % 3]]))));
+                for k in 0..3 {
+                    listed.remove(&ordered([face[k], face[(k + 1) % 3]]));
+                }
             }
         }
         // A weld may leave an edge with one vertex: that is a point.

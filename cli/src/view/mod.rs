@@ -80,7 +80,7 @@ pub fn view(args: &ViewArgs) -> Result<ExitCode, Error> {
                 }
             }
         }
-        Ok(view.end()?)
+        view.end()
     })?;
     let of = if at_rest { ["frame", "frames"] } else { ["step", "steps"] };
     let moments = counted(steps as u64, of[0], of[1]);
