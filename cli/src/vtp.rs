@@ -35,8 +35,16 @@ pub struct Vtp {
     steps: bool,
 }
 
-/// The number of two triangles, of a distance: behind those of [`Kind`].
-const TRIANGLES: u8 = Kind::Vv as u8 + 1;
+/// The number of two triangles, of a distance.
+const TRIANGLES: u8 = Kind::Ee as u8 + 1;
+
+/// The number of a kind: later kinds come behind two triangles.
+fn number(kind: Kind) -> u8 {
+    match kind {
+        Kind::Vf | Kind::Ee => kind as u8,
+        Kind::Ev | Kind::Vv => kind as u8 + 1,
+    }
+}
 
 impl Vtp {
     /// Takes the contacts of an answer; `step` of a sequence.
@@ -45,7 +53,7 @@ impl Vtp {
         let (step, geometry) = (step.unwrap_or(0), places.geometry.contacts());
         let entry = |kind, features, time, g: &ContactGeometry| Entry {
             step,
-            kind: kind as u8,
+            kind: number(kind),
             bodies: g.bodies.map(|body| body.index()),
             features,
             time,
