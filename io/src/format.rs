@@ -17,8 +17,8 @@ pub enum Format {
     /// glTF or GLB: the meshes of the scene, where its nodes place them. Corners of a mesh with equal
     /// coordinates become one vertex; a note counts them.
     Gltf,
-    /// Wavefront OBJ: `v`, `f`, `l` and `p`. Other keywords of the format are skipped; [`MeshFile::notes`]
-    /// counts all else.
+    /// Wavefront OBJ: `v`, `f`, `l` and `p`. Other keywords of the format are skipped;
+    /// [`MeshFile::notes`](crate::MeshFile::notes) counts all else.
     Obj,
 }
 
