@@ -18,6 +18,12 @@ pub fn right_triangle(size: f64) -> Mesh {
     Mesh::new("test", Positions::F64(points), vec![[0, 1, 2]]).expect("a mesh")
 }
 
+/// A triangle at that height.
+pub fn level(z: f32) -> Mesh {
+    let points = vec![[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]];
+    Mesh::new("cloth", Positions::F32(points), vec![[0, 1, 2]]).expect("a mesh")
+}
+
 /// `n` random triangles in the unit cube, so large that each meets a few others; still, or each corner moving on its own.
 pub fn soup(n: usize, seed: u64, moving: bool) -> Body {
     let size = 0.75 / (n as f32).cbrt();

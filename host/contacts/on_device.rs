@@ -10,10 +10,11 @@ pub use nearmiss_kernels::abi::{FrameStatus, Hit, NearHit, NearestHit, Pair};
 pub enum Entries {
     /// [`Pair`]: two triangles.
     TrianglePairs,
-    /// [`Hit`]: a vertex and an [element](crate::Body::elements), or two edges, and their first time of contact. An earliest
-    /// query has none.
+    /// [`Hit`]: a vertex and an [element](crate::Body::elements), or two edges, and their first time
+    /// of contact. An earliest query has none.
     Contacts,
-    /// [`NearHit`]: a vertex and an [element](crate::Body::elements), or two edges, their squared distance and nearest points.
+    /// [`NearHit`]: a vertex and an [element](crate::Body::elements), or two edges, their squared
+    /// distance and nearest points.
     NearPairs,
     /// [`NearestHit`]: two triangles, their distance and nearest points.
     Nearest,

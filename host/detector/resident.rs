@@ -237,13 +237,13 @@ impl Places {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::samples::level;
     use crate::scene::{DeviceMotion, DeviceRows, Motion, Number};
-    use crate::{Device, Discrete, Mesh, device::Backend};
+    use crate::{Device, Discrete, device::Backend};
 
     #[test]
     fn no_call_reads_arrays_of_a_frame_that_failed() {
-        let at = |z| Positions::F32(vec![[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]]);
-        let body = |z| Body::deformable(Mesh::new("cloth", at(z), vec![[0, 1, 2]]).expect("a mesh"));
+        let body = |z| Body::deformable(level(z));
         let device = Device::open(Backend::Cpu, Some(1)).expect("a thread");
         let mut detector = Detector::new(device, vec![body(0.0), body(1.0)]).expect("a detector");
         // SAFETY: nothing reads them; that is the claim. There is nothing at this address.
@@ -255,7 +255,7 @@ mod tests {
         let error = refused.expect_err("a position that is unknown").to_string();
         assert!(error.starts_with("the position of cloth is unknown"), "{error}");
         let id = detector.scene().ids().next().expect("a body");
-        detector.update(&[(id, Motion::positions(&at(1.0)))]).expect("known again");
+        detector.update(&[(id, Motion::positions(level(1.0).positions()))]).expect("known again");
         assert_eq!(detector.query(&Discrete::default()).expect("an answer").len(), 1);
     }
 }

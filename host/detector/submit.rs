@@ -251,9 +251,9 @@ impl Detector {
 mod tests {
     use super::*;
     use crate::device::Backend;
-    use crate::mesh::Positions;
+    use crate::samples::level;
     use crate::scene::{DeviceRows, Number};
-    use crate::{Body, Device, Mesh, Near};
+    use crate::{Body, Device, Near};
     use std::cell::Cell;
 
     #[test]
@@ -281,12 +281,12 @@ mod tests {
 
     #[test]
     fn arrays_of_an_ended_preparation_are_not_read() {
-        let at = |z| Positions::F32(vec![[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]]);
-        let body = |z| Body::deformable(Mesh::new("cloth", at(z), vec![[0, 1, 2]]).expect("a mesh"));
+        let body = |z| Body::deformable(level(z));
         let device = Device::open(Backend::Cpu, Some(1)).expect("a thread");
         let mut detector = Detector::new(device, vec![body(3.0), body(0.0)]).expect("a detector");
         let id = detector.scene().ids().next().expect("a body");
-        let array: Vec<Cell<f32>> = at(2.0).to_f64().iter().flatten().map(|&x| Cell::new(x as f32)).collect();
+        let array: Vec<Cell<f32>> =
+            level(2.0).positions().to_f64().iter().flatten().map(|&x| Cell::new(x as f32)).collect();
         // SAFETY: three vertices, which this test alone writes, between calls.
         let rows = unsafe { DeviceRows::new(array.as_ptr() as u64, 3, 12, Number::F32) }.expect("rows");
         let near = Near::within(1.5);

@@ -1,6 +1,6 @@
 //! Edges and points of a mesh that are in no face, and the numbering of its edges.
 
-use super::{MAX_FACES, Mesh, Problem, validate};
+use super::{MAX_FACES, Mesh, Positions, Problem, validate};
 use crate::Error;
 use std::collections::HashSet;
 
@@ -42,7 +42,24 @@ pub(crate) struct Elements {
     pub edges: usize,
 }
 
+/// The kinds of elements.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Element {
+    Face,
+    Edge,
+    Point,
+}
+
 impl Elements {
+    /// Kind of an element.
+    pub fn kind(&self, element: usize) -> Element {
+        match element {
+            face if face < self.faces => Element::Face,
+            edge if edge < self.faces + self.edges => Element::Edge,
+            _ => Element::Point,
+        }
+    }
+
     /// Appends the edges and points that no face has, each once and in the order given. Linear.
     pub fn new(faces: Vec<[u32; 3]>, loose: &Loose, vertex_count: usize) -> Elements {
         let count = faces.len();
@@ -112,8 +129,9 @@ impl Mesh {
                 return Err(self.bad(Problem::EdgeOfOneVertex { edge, vertex: ends[0] }));
             }
         }
+        self.admit(edges.iter().flatten().copied())?;
         self.loose.edges = edges;
-        self.with_loose()
+        self.fits()
     }
 
     /// Sets points: vertices that take part by themselves, as particles do. Those of a face or an
@@ -126,8 +144,9 @@ impl Mesh {
         for (at, &index) in points.iter().enumerate() {
             self.has_vertex("point", at, index)?;
         }
+        self.admit(points.iter().copied())?;
         self.loose.points = points;
-        self.with_loose()
+        self.fits()
     }
 
     /// Edges, as given; empty if there are those of faces alone.
@@ -140,23 +159,28 @@ impl Mesh {
         &self.loose.points
     }
 
-    /// Checks the vertices of edges and points, as [`Mesh::new`] does those of faces.
-    fn with_loose(mut self) -> Result<Mesh, Error> {
+    /// Checks coordinates of vertices, as [`Mesh::new`] does those of faces.
+    fn admit(&mut self, vertices: impl Iterator<Item = u32> + Clone) -> Result<(), Error> {
+        if vertices.clone().next().is_none() {
+            return Ok(());
+        }
+        let single = validate::is_single((&self.positions).into(), vertices);
+        if !single.map_err(|problem| self.bad(problem))? {
+            let none = Positions::F32(Vec::new());
+            self.positions = std::mem::replace(&mut self.positions, none).promoted();
+        }
+        Ok(())
+    }
+
+    /// Refuses more elements than a mesh may have.
+    fn fits(self) -> Result<Mesh, Error> {
         let Loose { edges, points } = &self.loose;
         let (all, limit) = (self.faces.len() + edges.len() + points.len(), MAX_FACES);
         if all > limit {
             let what = "triangles, edges and points";
             return Err(self.bad(Problem::TooMany { what, count: all as u64, limit: limit as u64 }));
         }
-        let used: Vec<[u32; 3]> = self.loose.vertices().map(|vertex| [vertex; 3]).collect();
-        match validate::is_single((&self.positions).into(), &used) {
-            Ok(true) => Ok(self),
-            Ok(false) => {
-                self.positions = self.positions.promoted();
-                Ok(self)
-            }
-            Err(problem) => Err(self.bad(problem)),
-        }
+        Ok(self)
     }
 
     fn has_vertex(&self, what: &'static str, at: usize, index: u32) -> Result<(), Error> {
@@ -175,7 +199,6 @@ impl Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Positions;
 
     fn mesh() -> Mesh {
         let positions = Positions::F32((0..8).map(|i| [i as f32, 0.0, 0.0]).collect());

@@ -20,7 +20,7 @@ mod weld;
 
 pub use crate::scene::Body;
 pub(crate) use difference::difference;
-pub(crate) use loose::{Elements, Loose};
+pub(crate) use loose::{Element, Elements, Loose};
 pub use matrix_problem::MatrixProblem;
 pub use obj_problem::ObjProblem;
 pub use ply_problem::PlyProblem;

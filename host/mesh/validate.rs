@@ -29,19 +29,20 @@ pub(super) fn check(positions: Positions, faces: &[[u32; 3]]) -> Result<Position
             }
         }
     }
-    Ok(if is_single((&positions).into(), faces)? { positions } else { positions.promoted() })
+    let used = faces.iter().flatten().copied();
+    Ok(if is_single((&positions).into(), used)? { positions } else { positions.promoted() })
 }
 
 /// Whether single precision is sufficient for the positions. If not, they are kept as doubles.
 ///
 /// # Errors
 /// The first coordinate, in vertex order, of a used vertex that exceeds every precision.
-pub(crate) fn is_single(positions: Points, faces: &[[u32; 3]]) -> Result<bool, Problem> {
+pub(crate) fn is_single(positions: Points, used: impl Iterator<Item = u32> + Clone) -> Result<bool, Problem> {
     match positions {
-        Points::F32(points) if coordinates(points, MAX_ABS_F32, "2^60", faces).is_ok() => Ok(true),
+        Points::F32(points) if coordinates(points, MAX_ABS_F32, "2^60", used.clone()).is_ok() => Ok(true),
         // Every finite float is small as a double.
-        Points::F32(points) => coordinates(points, f32::MAX, "2^480", faces).map(|()| false),
-        Points::F64(points) => coordinates(points, MAX_ABS_F64, "2^480", faces).map(|()| false),
+        Points::F32(points) => coordinates(points, f32::MAX, "2^480", used).map(|()| false),
+        Points::F64(points) => coordinates(points, MAX_ABS_F64, "2^480", used).map(|()| false),
     }
 }
 
@@ -57,7 +58,7 @@ fn coordinates<T: Copy + Into<f64>>(
     points: &[[T; 3]],
     max: T,
     limit: &'static str,
-    faces: &[[u32; 3]],
+    used_by: impl Iterator<Item = u32>,
 ) -> Result<(), Problem> {
     let max: f64 = max.into();
     // NaN compares false, so it is bad as well.
@@ -66,9 +67,8 @@ fn coordinates<T: Copy + Into<f64>>(
         return Ok(());
     }
     let mut used = vec![false; points.len()];
-    for &index in faces.iter().flatten() {
-        used[index as usize] = true; // in range: checked before
-    }
+    // In range: checked before.
+    used_by.for_each(|index| used[index as usize] = true);
     for (vertex, p) in points.iter().enumerate().filter(|&(vertex, p)| used[vertex] && bad(p)) {
         for (&x, axis) in p.iter().zip(['x', 'y', 'z']) {
             let value: f64 = x.into();

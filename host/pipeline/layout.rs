@@ -2,14 +2,13 @@
 
 use super::excluded::Excluded;
 use super::hubs;
-use crate::contacts::Kind;
 use crate::error::Error;
-use crate::mesh::{NO_EDGE, Topology, owners};
+use crate::mesh::{self, NO_EDGE, Topology, owners};
 use crate::query::QueryKind;
 use crate::scene::{Body, BodyId, BodyKind, CollisionFilter, Scene};
 use nearmiss_emulator::Looks;
 use nearmiss_kernels::abi::rows::code;
-use nearmiss_kernels::abi::{BodyRecord, EVERY, Element, NodeFilter};
+use nearmiss_kernels::abi::{BodyRecord, EVERY, Element, Feature, NodeFilter};
 use nearmiss_kernels::bvh::filter::is_left_out;
 use std::sync::Arc;
 
@@ -22,6 +21,22 @@ pub struct Offsets {
     pub triangle: u32,
     /// First edge.
     pub edge: u32,
+}
+
+impl Offsets {
+    /// Returns the first feature of a list.
+    pub fn start(&self, of: Feature) -> u32 {
+        match of {
+            Feature::VERTEX => self.vertex,
+            Feature::TRIANGLE => self.triangle,
+            _ => self.edge,
+        }
+    }
+
+    /// Returns them in the order of [`Feature`].
+    pub fn starts(&self) -> [u32; Feature::COUNT as usize] {
+        [Feature::VERTEX, Feature::TRIANGLE, Feature::EDGE].map(|of| self.start(of))
+    }
 }
 
 /// Topology of all bodies in one numbering, body after body. Layouts for several queries of one
@@ -190,12 +205,14 @@ impl Layout {
             self.starts[i + 1].edge = features.edges.len() as u32;
             if has_elements {
                 let first = features.elements.len();
-                let of = |at: usize| match body.element_kind(at) {
-                    Kind::Vf | Kind::Ee => (first + at) as u32,
-                    Kind::Ev => features.face_edges[first + at][0],
-                    Kind::Vv => body.elements()[at][0] + vertex,
+                let element = |at: usize| {
+                    let (kind, number) = match body.element_kind(at) {
+                        mesh::Element::Face => (code::VERTEX_FACE, (first + at) as u32),
+                        mesh::Element::Edge => (code::EDGE_VERTEX, features.face_edges[first + at][0]),
+                        mesh::Element::Point => (code::VERTEX_VERTEX, body.elements()[at][0] + vertex),
+                    };
+                    Element { kind: kind.into(), number }
                 };
-                let element = |at: usize| Element { kind: body.element_kind(at) as u32, number: of(at) };
                 let elements: Vec<Element> = (0..body.element_count()).map(element).collect();
                 features.elements.extend(elements);
             }
@@ -213,13 +230,9 @@ impl Layout {
         layout
     }
 
-    /// Returns what a triangle stands for, as the kind of a row of it and a vertex.
-    pub fn kind(&self, triangle: usize) -> Kind {
-        match self.features.elements.get(triangle).map(|element| element.kind as u8) {
-            Some(code::EDGE_VERTEX) => Kind::Ev,
-            Some(code::VERTEX_VERTEX) => Kind::Vv,
-            _ => Kind::Vf,
-        }
+    /// Returns what a triangle stands for.
+    pub fn element(&self, triangle: u32) -> Element {
+        self.features.elements.get(triangle as usize).copied().unwrap_or(Element::face(triangle))
     }
 
     /// Returns whether edges are numbered.

@@ -11,7 +11,7 @@ use crate::device::{Buffer, Device, Kept};
 use crate::error::Error;
 use crate::pipeline::{launch, purpose};
 use nearmiss_kernels::abi::{
-    Bins, Counter, Counters, Element, Feature, Hit, Named, NearHit, OrderArgs, Output, Pair, Span, counter,
+    Bins, Counter, Counters, Element, Hit, Named, NearHit, OrderArgs, Output, Pair, Span, counter,
 };
 use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::stage::order::starts::{EACH, MOST_TILES};
@@ -181,7 +181,7 @@ impl<T: Ordered> Order<T> {
         let words = all as u32 / 2 + 1;
         let round = EACH * device.lanes::<entry::order_starts>();
         let of_a_tile = words.div_ceil(round).div_ceil(MOST_TILES) * round;
-        let table: Vec<u32> = layout.starts.iter().flat_map(starts).collect();
+        let table: Vec<u32> = layout.starts.iter().flat_map(Offsets::starts).collect();
         Ok(Order {
             rows: List::new(device, "contacts in order", counter::ORDERED, capacity)?,
             contacts: None,
@@ -293,9 +293,4 @@ impl<T: Ordered> Order<T> {
         }
         launch::striding::<T::Rank>(device, capacity, &level(self.levels.0))
     }
-}
-
-/// Returns the first vertex, triangle and edge of a body, in the order of [`Feature`].
-fn starts(at: &Offsets) -> [u32; Feature::COUNT as usize] {
-    [at.vertex, at.triangle, at.edge]
 }

@@ -3,10 +3,9 @@
 use super::place::radius;
 use super::{BodyKind, CollisionFilter, DeviceMotion, Pose, PosePath, PoseStep, Thickness};
 use crate::Error;
-use crate::contacts::Kind;
 #[cfg(doc)]
 use crate::mesh::Problem;
-use crate::mesh::{Elements, Loose, Mesh, Positions, Vertices, difference, rename};
+use crate::mesh::{Element, Elements, Loose, Mesh, Positions, Vertices, difference, rename};
 use nearmiss_kernels::math::Vec3;
 
 /// Faces with the positions of one frame, or of both ends of a step. Vertices move in straight
@@ -87,8 +86,7 @@ impl Body {
     /// A body that moves as a whole; without a pose it is in the position of its mesh.
     pub fn rigid(mesh: Mesh) -> Body {
         let body = Body::deformable(mesh);
-        let used = body.elements().iter().flatten();
-        let radius = radius(used.filter_map(|&v| body.positions_t0.get_f64(v as usize)));
+        let radius = radius(body.used().filter_map(|v| body.positions_t0.get_f64(v as usize)));
         Body { kind: BodyKind::Rigid, radius, ..body }
     }
 
@@ -251,14 +249,9 @@ impl Body {
         self.elements.corners.len()
     }
 
-    /// Kind of an element, as that of its rows with a vertex.
-    pub(crate) fn element_kind(&self, element: usize) -> Kind {
-        let Elements { faces, edges, .. } = self.elements;
-        match element {
-            face if face < faces => Kind::Vf,
-            edge if edge < faces + edges => Kind::Ev,
-            _ => Kind::Vv,
-        }
+    /// Kind of an element.
+    pub(crate) fn element_kind(&self, element: usize) -> Element {
+        self.elements.kind(element)
     }
 
     /// Whether only the device has the body's place:
@@ -323,7 +316,7 @@ impl Body {
     }
 
     /// Vertices of elements, some of them several times.
-    fn used(&self) -> impl Iterator<Item = u32> + '_ {
+    pub(super) fn used(&self) -> impl Iterator<Item = u32> + Clone + '_ {
         self.elements().iter().flatten().copied()
     }
 
@@ -343,8 +336,8 @@ impl Body {
         std::iter::once(&self.positions_t0).chain(&self.positions_t1).map(mesh).collect()
     }
 
-    /// xxh3 of the faces, edges and points and of the bits of every position, little-endian: the same on every
-    /// machine.
+    /// xxh3 of the faces, edges and points and of the bits of every position, little-endian: the same
+    /// on every machine.
     pub fn fingerprint(&self) -> u64 {
         let mut hash = xxhash_rust::xxh3::Xxh3::new();
         let Loose { edges, points } = &self.loose;

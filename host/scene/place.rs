@@ -93,7 +93,7 @@ impl Body {
     /// Returns whether f32 can compute with positions; an error if f64 cannot either.
     pub(crate) fn is_single(&self, points: Points) -> Result<bool, Error> {
         let wrong = |problem| Error::Input { file: self.name.clone(), problem };
-        mesh::is_single(points, self.elements()).map_err(wrong)
+        mesh::is_single(points, self.used()).map_err(wrong)
     }
 
     pub(crate) fn check_pose(&self, pose: &Pose) -> Result<(), Error> {
@@ -102,7 +102,7 @@ impl Body {
             return Ok(());
         }
         // The ball in which it turns is up to twice as large as the body: then its vertices decide.
-        let used = self.elements().iter().flatten().filter_map(|&v| self.positions_t0.get_f64(v as usize));
+        let used = self.used().filter_map(|v| self.positions_t0.get_f64(v as usize));
         let size = used.flat_map(|point| pose.apply(point)).fold(0.0_f64, |most, x| most.max(x.abs()));
         if size > MAX_ABS_F64 {
             return Err(Error::Input { file: self.name.clone(), problem: Problem::PoseTooFar { size } });
@@ -150,7 +150,7 @@ impl Body {
     }
 
     fn put_vertices(&mut self, t0: Points, t1: Option<Points>) {
-        let single = |points| matches!(mesh::is_single(points, self.elements()), Ok(true));
+        let single = |points| matches!(mesh::is_single(points, self.used()), Ok(true));
         let as_f64 = !std::iter::once(t0).chain(t1).all(single);
         self.keep_tolerance();
         t0.copy_to(&mut self.positions_t0, as_f64);

@@ -1,7 +1,7 @@
 //! Sides of triangles: their mean, and the default tolerance that follows from it.
 
 use super::Body;
-use crate::contacts::Kind;
+use crate::mesh::Element;
 use crate::query::Certified;
 
 /// [`Certified::TOLERANCE`] of the mean side of the triangles at t = 0, rounded down to a power of
@@ -18,9 +18,9 @@ pub fn mean_side(bodies: &[Body]) -> f64 {
         let at = body.positions_t0().to_f64();
         for (element, face) in body.elements().iter().enumerate() {
             let sides = match body.element_kind(element) {
-                Kind::Ev => 1,
-                Kind::Vv => 0,
-                Kind::Vf | Kind::Ee => 3,
+                Element::Face => 3,
+                Element::Edge => 1,
+                Element::Point => 0,
             };
             for k in 0..sides {
                 let [p, q] = [face[k], face[(k + 1) % 3]].map(|v| at[v as usize]);

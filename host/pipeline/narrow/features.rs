@@ -1,7 +1,6 @@
 //! From triangle pairs to vertex/face and edge/edge candidates: topology, lists, the launch.
 
 use super::NarrowContext;
-use crate::contacts::Kind;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::counts::Counts;
@@ -9,6 +8,7 @@ use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{List, Named, named};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::{launch, purpose};
+use nearmiss_kernels::abi::rows::code;
 use nearmiss_kernels::abi::{Facet, FeaturesArgs, Output, Pair, Span, counter};
 use nearmiss_kernels::entry::Entry;
 
@@ -37,7 +37,8 @@ impl Features {
     pub fn new(device: &Device, layout: &Layout, [vf, ee]: [usize; 2]) -> Result<Self, Error> {
         let topology = &layout.features;
         let facet = |(at, ((&corners, &edges), &owned)): (usize, ((_, _), &u32))| {
-            let is_point = if layout.kind(at) == Kind::Vv { Facet::POINT } else { 0 };
+            let is_point = layout.element(at as u32).kind == u32::from(code::VERTEX_VERTEX);
+            let is_point = if is_point { Facet::POINT } else { 0 };
             Facet { corners, owned: owned | is_point, edges, pad: 0 }
         };
         let triangles = layout.faces.iter().zip(&topology.face_edges).zip(&topology.owners);

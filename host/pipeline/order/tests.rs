@@ -111,7 +111,7 @@ fn ordered<T: Ordered>(device: &Device, layout: &Layout, lists: [&[T]; 2], capac
 }
 
 /// The kind of a row, and both features.
-type Name = (u8, [u32; 2]);
+type Key = (u8, [u32; 2]);
 
 /// Returns the expected order: by kind, then by both features.
 fn wanted<T: Ordered>(layout: &Layout, lists: [&[T]; 2]) -> (Vec<T::Row>, Vec<T>) {
@@ -128,13 +128,13 @@ fn wanted<T: Ordered>(layout: &Layout, lists: [&[T]; 2]) -> (Vec<T::Row>, Vec<T>
             (false, Some((kind, number))) => (kind, [x, number]),
         }
     };
-    let mut all: Vec<(Name, T)> = [false, true]
+    let mut all: Vec<(Key, T)> = [false, true]
         .into_iter()
         .zip(lists)
         .flat_map(|(at, list)| list.iter().map(move |&contact| (name(at, &contact), contact)))
         .collect();
     all.sort_by_key(|(name, _)| *name);
-    let row = |&(name, contact): &(Name, T)| {
+    let row = |&(name, contact): &(Key, T)| {
         let (kind, [x, y]) = name;
         let of = match kind {
             _ if !T::OF_FEATURES => [Feature::TRIANGLE; 2],
@@ -143,7 +143,7 @@ fn wanted<T: Ordered>(layout: &Layout, lists: [&[T]; 2]) -> (Vec<T::Row>, Vec<T>
             code::EDGE_VERTEX => [Feature::EDGE, Feature::VERTEX],
             _ => [Feature::VERTEX; 2],
         };
-        let locate = |index: u32, of: Feature| layout.locate(index, |at| starts(at)[of.place() as usize]);
+        let locate = |index: u32, of: Feature| layout.locate(index, |at| at.start(of));
         let [(a, p), (b, q)] = [locate(x, of[0]), locate(y, of[1])];
         contact.row(&Located { bodies: [a.0, b.0], features: [p, q], kind, decided: 1 })
     };

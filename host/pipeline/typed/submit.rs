@@ -8,6 +8,7 @@ use crate::contacts::{DeviceAnswer, DeviceList};
 use crate::device::{Buffer, Replay};
 use crate::error::Error;
 use crate::pipeline::counts::Counts;
+use crate::pipeline::layout::Offsets;
 use crate::pipeline::list::GrowableOutput;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::Found;
@@ -171,7 +172,7 @@ impl<R: Precision> Submits for TypedPipeline<R> {
         let (submitted, own) = (self.submitted(query)?, &self.queries[query]);
         let lists = own.narrow.answer(&self.scene.features);
         let list = |&(address, room): &(u64, usize)| DeviceList { address, room };
-        let starts = own.layout.starts.iter().map(|at| [at.vertex, at.triangle, at.edge]);
+        let starts = own.layout.starts.iter().map(Offsets::starts);
         Some(DeviceAnswer {
             entries: lists.entries,
             lists: lists.lists.iter().map(list).collect(),

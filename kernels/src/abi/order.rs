@@ -7,7 +7,7 @@ use crate::prim::near::corner_weights;
 use bytemuck::{Pod, Zeroable};
 
 /// Which starts of a body count a feature: vertices, triangles or edges.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Feature(u32);
 
 impl Feature {
@@ -19,13 +19,48 @@ impl Feature {
     pub const EDGE: Feature = Feature(2);
     /// How many there are.
     pub const COUNT: u32 = 3;
-    /// Those of a vertex and a face.
-    pub const OF_FACE: [Feature; 2] = [Feature::VERTEX, Feature::TRIANGLE];
 
     /// Its place among the starts of a body.
     #[inline(always)]
     pub const fn place(self) -> u32 {
         self.0
+    }
+}
+
+/// The name of a contact in its row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Name {
+    /// A number of rows of features; 0 for triangle pairs.
+    pub kind: u8,
+    /// The lists that number its features.
+    pub of: [Feature; 2],
+    /// Both features, numbered through all bodies.
+    pub features: [u32; 2],
+}
+
+impl Name {
+    /// Of two triangles.
+    #[inline(always)]
+    pub fn of_triangles(features: [u32; 2]) -> Name {
+        Name { kind: 0, of: [Feature::TRIANGLE; 2], features }
+    }
+
+    /// Of two edges.
+    #[inline(always)]
+    pub fn of_edges(features: [u32; 2]) -> Name {
+        Name { kind: code::EDGE_EDGE, of: [Feature::EDGE; 2], features }
+    }
+
+    /// Of a vertex and a triangle that stands for this element.
+    #[inline(always)]
+    pub fn of_element(vertex: u32, Element { kind, number }: Element) -> Name {
+        let kind = kind as u8;
+        let (of, features) = match kind {
+            code::EDGE_VERTEX => ([Feature::EDGE, Feature::VERTEX], [number, vertex]),
+            code::VERTEX_VERTEX => ([Feature::VERTEX; 2], [vertex.min(number), vertex.max(number)]),
+            _ => ([Feature::VERTEX, Feature::TRIANGLE], [vertex, number]),
+        };
+        Name { kind, of, features }
     }
 }
 

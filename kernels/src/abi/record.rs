@@ -80,6 +80,14 @@ pub struct Element {
 }
 const _: () = assert!(size_of::<Element>() == 8);
 
+impl Element {
+    /// Of a triangle that is a face.
+    #[inline(always)]
+    pub fn face(triangle: u32) -> Element {
+        Element { kind: super::rows::code::VERTEX_FACE as u32, number: triangle }
+    }
+}
+
 /// Two indices: a triangle pair (discrete candidates and contacts), a vertex and a face, or two
 /// edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Pod, Zeroable)]

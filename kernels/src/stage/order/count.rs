@@ -24,7 +24,7 @@ pub fn count<T: Named, B: Block>(block: &mut B, args: &OrderArgs<T>) {
         }
         while number < contacts.count {
             let contact = contacts.get(lane, args, number);
-            let bin = contacts.named(lane, args, number, &contact).bin;
+            let (_, bin) = contacts.named(lane, args, number, &contact);
             let half = 32 * (bin % 2);
             let before = lane.fetch_add(args.bins.counts, bin / 2, 1 << half);
             lane.write(args.slots, number, (before >> half) as u32);

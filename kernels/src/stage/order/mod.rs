@@ -19,7 +19,7 @@ pub mod rank;
 pub mod starts;
 
 use crate::abi::rows::code;
-use crate::abi::{Element, Feature, Named, OrderArgs, Output};
+use crate::abi::{Element, Name, Named, OrderArgs, Output};
 use crate::exec::{Block, Lane};
 use bytemuck::Pod;
 
@@ -55,47 +55,33 @@ impl Contacts {
         }
     }
 
-    /// How the contact of a number is named in its row.
+    /// The name of the contact of a number, and the bin of its kind and first feature.
     #[inline(always)]
-    fn named<T: Named, L: Lane>(&self, lane: &L, args: &OrderArgs<T>, number: u32, contact: &T) -> Name {
+    fn named<T: Named, L: Lane>(
+        &self,
+        lane: &L,
+        args: &OrderArgs<T>,
+        number: u32,
+        contact: &T,
+    ) -> (Name, u32) {
         let [x, y] = contact.name();
-        if !T::OF_FEATURES {
-            return Name { kind: 0, of: [Feature::TRIANGLE; 2], features: [x, y], bin: x };
-        }
-        if number >= self.first {
-            let bin = args.vertices + x;
-            return Name { kind: code::EDGE_EDGE, of: [Feature::EDGE; 2], features: [x, y], bin };
-        }
-        if args.elements.is_empty() {
-            return Name { kind: code::VERTEX_FACE, of: Feature::OF_FACE, features: [x, y], bin: x };
-        }
-        let Element { kind, number } = lane.read(args.elements, y);
-        let kind = kind as u8;
-        let further = args.vertices + args.edges;
-        match kind {
-            code::EDGE_VERTEX => {
-                let of = [Feature::EDGE, Feature::VERTEX];
-                Name { kind, of, features: [number, x], bin: further + number }
-            }
-            code::VERTEX_VERTEX => {
-                let (of, first) = ([Feature::VERTEX; 2], x.min(number));
-                Name { kind, of, features: [first, x.max(number)], bin: further + args.edges + first }
-            }
-            _ => Name { kind, of: Feature::OF_FACE, features: [x, number], bin: x },
-        }
+        let name = if !T::OF_FEATURES {
+            Name::of_triangles([x, y])
+        } else if number >= self.first {
+            Name::of_edges([x, y])
+        } else if args.elements.is_empty() {
+            Name::of_element(x, Element::face(y))
+        } else {
+            Name::of_element(x, lane.read(args.elements, y))
+        };
+        let before = match name.kind {
+            code::EDGE_EDGE => args.vertices,
+            code::EDGE_VERTEX => args.vertices + args.edges,
+            code::VERTEX_VERTEX => args.vertices + 2 * args.edges,
+            _ => 0,
+        };
+        (name, before + name.features[0])
     }
-}
-
-/// The name of a contact in its row.
-struct Name {
-    /// A number of rows of features; 0 for triangle pairs.
-    kind: u8,
-    /// What its features are.
-    of: [Feature; 2],
-    /// Both features, numbered through all bodies.
-    features: [u32; 2],
-    /// The bin of its kind and first feature.
-    bin: u32,
 }
 
 fn listed<T: Pod, B: Block>(block: &B, list: &Output<T>) -> u32 {

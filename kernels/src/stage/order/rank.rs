@@ -14,8 +14,8 @@
 //!          bin, a contact in, a row out. A merge: a binary search in each other run, of
 //!          [16](super::WAYS_BITS) at most. So a bin of n costs n · log n, not n².
 
-use super::{Contacts, Name};
-use crate::abi::{Feature, Located, Named, OrderArgs, Span};
+use super::Contacts;
+use crate::abi::{Feature, Located, Name, Named, OrderArgs, Span};
 use crate::exec::{Block, Lane};
 
 /// A key of each contact, to its bin.
@@ -26,7 +26,7 @@ pub fn place<T: Named, B: Block>(block: &mut B, args: &OrderArgs<T>) {
         let mut number = lane.global();
         while number < contacts.count {
             let contact = contacts.get(lane, args, number);
-            let Name { bin, features, .. } = contacts.named(lane, args, number, &contact);
+            let (Name { features, .. }, bin) = contacts.named(lane, args, number, &contact);
             let start = lane.read(args.bins.starts, bin);
             let slot = lane.read(args.slots, number);
             lane.write(args.keys, start + slot, (features[1] as u64) << 32 | number as u64);
@@ -44,7 +44,7 @@ pub fn merge<T: Named, B: Block>(block: &mut B, args: &OrderArgs<T>) {
         while at < contacts.count {
             let key = lane.read(args.keys, at);
             let contact = contacts.get(lane, args, key as u32);
-            let bin = contacts.named(lane, args, key as u32, &contact).bin;
+            let (_, bin) = contacts.named(lane, args, key as u32, &contact);
             lane.write(args.merged, ranked(lane, args, bin, at, key), key);
             at = at.saturating_add(stride);
         }
@@ -61,7 +61,7 @@ pub fn rank<T: Named, B: Block>(block: &mut B, args: &OrderArgs<T>) {
             let key = lane.read(args.keys, at);
             let number = key as u32;
             let contact = contacts.get(lane, args, number);
-            let Name { kind, of, features: [x, y], bin } = contacts.named(lane, args, number, &contact);
+            let (Name { kind, of, features: [x, y] }, bin) = contacts.named(lane, args, number, &contact);
             let place = ranked(lane, args, bin, at, key);
             let [a, p] = located(lane, args.bodies, of[0], x);
             let [b, q] = located(lane, args.bodies, of[1], y);
