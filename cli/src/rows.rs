@@ -171,7 +171,8 @@ fn pair_place(g: &PairGeometry) -> [String; 8] {
     [pair_kind(g.kind).into(), x, y, z, u, v, w, error]
 }
 
-fn pair_kind(kind: PairKind) -> &'static str {
+/// The name of a way to meet.
+pub const fn pair_kind(kind: PairKind) -> &'static str {
     match kind {
         PairKind::Crossing => "crossing",
         PairKind::Point => "point",
@@ -187,7 +188,8 @@ fn place(g: &ContactGeometry) -> impl Iterator<Item = String> + use<> {
     owners.into_iter().chain(g.vertices.map(|vertex| vertex.to_string())).chain(numbers)
 }
 
-fn status(status: Status) -> &'static str {
+/// The name of a certainty.
+pub const fn status(status: Status) -> &'static str {
     match status {
         Status::Unverified => "unverified",
         Status::Certified => "certified",

@@ -124,7 +124,7 @@ fn draw(
         | Rows::Earliest(_) => Geometry::default(),
     };
     let (bodies, paint) = (detector.scene().bodies(), Paint::of(args.detect.out.heat));
-    let triangles: usize = bodies.iter().map(|body| body.element_count()).sum();
+    let triangles: usize = bodies.iter().map(Body::element_count).sum();
     memory::require("the picture", draw::bytes(look.size, triangles))?;
     let painted = paint::paint(bodies, look.time, (found, geometry.contacts()), paint)?;
     let points = painted.mesh.positions().to_f64();

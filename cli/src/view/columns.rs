@@ -1,7 +1,8 @@
 //! The rows of an answer as arrays of numbers: the page reads them by the names of their columns.
 
 use super::page::About;
-use nearmiss::contacts::{Contacts, Geometry, NearestTriangles, PairKind, Rows, Status};
+use crate::rows::{pair_kind, status};
+use nearmiss::contacts::{Contacts, Geometry, Kind, NearestTriangles, PairKind, Rows, Status};
 use nearmiss::query::{Query, QueryKind};
 use nearmiss::research::QueryExt;
 use nearmiss::scene::BodyId;
@@ -39,7 +40,14 @@ const WEIGHTS: [&str; 4] = ["weight_0", "weight_1", "weight_2", "weight_3"];
 const TIMES: [&str; 2] = ["toi", "toi_upper"];
 const ENDS: [&str; 6] = ["x_0", "y_0", "z_0", "x_1", "y_1", "z_1"];
 const POINTS: [&str; 6] = ["x_a", "y_a", "z_a", "x_b", "y_b", "z_b"];
-const STATUS: [&str; 3] = ["unverified", "certified", "undecided"];
+const KINDS: [&str; 4] = [Kind::Vf.name(), Kind::Ee.name(), Kind::Ev.name(), Kind::Vv.name()];
+const STATUS: [&str; 3] = [status(Status::Unverified), status(Status::Certified), status(Status::Undecided)];
+const MEETINGS: [&str; 4] = [
+    pair_kind(PairKind::Crossing),
+    pair_kind(PairKind::Point),
+    pair_kind(PairKind::Segment),
+    pair_kind(PairKind::Overlap),
+];
 
 /// A row's arrays, in the order of the columns.
 #[derive(Default)]
@@ -51,8 +59,8 @@ pub struct Arrays {
 impl Columns {
     /// The columns of a query's rows. `body_a` and `body_b` come first.
     pub fn of(query: &Query, bodies: usize) -> Columns {
-        let features = Names { kind: &["vf", "ee", "ev", "vv"], status: &STATUS };
-        let meetings = Names { kind: &["crossing", "point", "segment", "overlap"], ..Names::default() };
+        let features = Names { kind: &KINDS, status: &STATUS };
+        let meetings = Names { kind: &MEETINGS, ..Names::default() };
         // Pairs of a solver that can be wrong may have no common point.
         let is_exact = query.solver().is_certain();
         let (words, numbers, names): (Vec<&[&str]>, Vec<&[&str]>, Names) = match query.kind() {
@@ -100,7 +108,7 @@ impl About {
                 for (at, pair) in all.iter().enumerate() {
                     to.words.extend(numbers(pair.bodies).into_iter().chain(pair.triangles));
                     if let Some(own) = geometry.pairs().get(at) {
-                        to.words.push(meeting(own.kind));
+                        to.words.push(own.kind as u32);
                         // Two triangles that share an area have no segment.
                         let ends = own.ends.map(|ends| ends.map(|point| self.near_origin(point)));
                         to.numbers.extend(ends.unwrap_or([[f64::NAN; 3]; 2]).as_flattened());
@@ -110,7 +118,7 @@ impl About {
             Rows::Contacts(all) => {
                 for (at, row) in all.iter().enumerate() {
                     to.words.extend(numbers(row.bodies));
-                    to.words.extend([row.kind as u32, row.feature_a, row.feature_b, status(row.status)]);
+                    to.words.extend([row.kind as u32, row.feature_a, row.feature_b, row.status as u32]);
                     features(&mut to, at, &[row.toi, row.toi_upper]);
                 }
             }
@@ -139,21 +147,4 @@ impl About {
 
 fn numbers(bodies: [BodyId; 2]) -> [u32; 2] {
     bodies.map(|body| body.index() as u32)
-}
-
-fn meeting(kind: PairKind) -> u32 {
-    match kind {
-        PairKind::Crossing => 0,
-        PairKind::Point => 1,
-        PairKind::Segment => 2,
-        PairKind::Overlap => 3,
-    }
-}
-
-fn status(status: Status) -> u32 {
-    match status {
-        Status::Unverified => 0,
-        Status::Certified => 1,
-        Status::Undecided => 2,
-    }
 }

@@ -47,7 +47,7 @@ pub fn view(args: &ViewArgs) -> Result<ExitCode, Error> {
     let Question { scene, query, sequence, notes, .. } = question(&args.detect)?;
     notes.iter().for_each(|note| say(note));
     promise(&query);
-    let triangles: usize = scene.bodies().iter().map(|body| body.faces().len()).sum();
+    let triangles: usize = scene.bodies().iter().map(Body::element_count).sum();
     memory::require("the page", triangles as u64 * OF_A_TRIANGLE)?;
     let about = about(args, (&scene, &query), sequence.as_ref())?;
     let (mut steps, name) = (0, out.display().to_string());
@@ -150,7 +150,7 @@ impl<'a> View<'a> {
         let bodies = scene.bodies();
         let mesh = paint::merged(bodies, 0.0)?;
         let colours = body_colours(bodies, mesh.faces(), mesh.vertex_count());
-        let motions = Motions::of(bodies, &about);
+        let motions = Motions::of(bodies);
         let page = Page::begin(out, about, bodies, (mesh.faces(), &colours)).map_err(Stop::File)?;
         Ok(View { page, motions, paint: Paint::of(args.detect.out.heat) })
     }

@@ -27,37 +27,44 @@ pub type Places = Vec<f32>;
 pub struct Motions {
     last: Vec<Option<(usize, Places)>>,
     count: usize,
-    at_rest: bool,
 }
 
 /// Numbers of stored places at the start and at the end, one a body.
 pub type Ends = [Vec<usize>; 2];
 
 impl Motions {
-    pub fn of(bodies: &[Body], about: &About) -> Motions {
-        Motions { last: vec![None; bodies.len()], count: 0, at_rest: about.at_rest }
+    pub fn of(bodies: &[Body]) -> Motions {
+        Motions { last: vec![None; bodies.len()], count: 0 }
     }
 
     /// Both ends of a step, the bodies that turn, and the places that are new.
     pub fn step(&mut self, bodies: &[Body], about: &About) -> (Ends, Vec<Turn>, Vec<(usize, Places)>) {
-        let (mut ends, mut stored) = (Ends::default(), Vec::new());
-        let times: &[f64] = if self.at_rest { &[0.0, 0.0] } else { &[0.0, 1.0] };
-        for (at, body) in bodies.iter().enumerate() {
-            for (end, time) in times.iter().enumerate() {
-                let places = places(body, *time, about);
-                let known = self.last[at].as_ref().filter(|(_, last)| *last == places);
-                let number = known.map_or(self.count, |(number, _)| *number);
-                if known.is_none() {
-                    self.count += 1;
-                    stored.push((number, places.clone()));
-                    self.last[at] = Some((number, places));
-                }
-                ends[end].push(number);
+        let mut stored = Vec::new();
+        let mut all = |time: f64| -> Vec<usize> {
+            let one = |(at, body): (usize, &Body)| self.number(at, places(body, time, about), &mut stored);
+            bodies.iter().enumerate().map(one).collect()
+        };
+        let start = all(0.0);
+        if about.at_rest {
+            return ([start.clone(), start], Vec::new(), stored);
+        }
+        let ends = [start, all(1.0)];
+        let turns = |(at, body): (usize, &Body)| turn(at, body, about);
+        (ends, bodies.iter().enumerate().filter_map(turns).collect(), stored)
+    }
+
+    /// The number of a body's places, which are stored if they are not its last ones.
+    fn number(&mut self, at: usize, places: Places, stored: &mut Vec<(usize, Places)>) -> usize {
+        match &self.last[at] {
+            Some((number, last)) if *last == places => *number,
+            _ => {
+                let number = self.count;
+                self.count += 1;
+                stored.push((number, places.clone()));
+                self.last[at] = Some((number, places));
+                number
             }
         }
-        let turns = |(at, body): (usize, &Body)| turn(at, body, about);
-        let turns = bodies.iter().enumerate().filter(|_| !self.at_rest).filter_map(turns).collect();
-        (ends, turns, stored)
     }
 }
 
