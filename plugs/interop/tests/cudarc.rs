@@ -8,8 +8,8 @@ use cudarc::driver::{CudaContext, CudaStream, DeviceRepr};
 use nearmiss::Device;
 use nearmiss::device::Backend;
 use nearmiss_interop::cudarc::device;
-use nearmiss_interop::{Element, Error, Input, Place, Submissions, update};
-use scene::{answer, detector, has_the_answer_of_the_cpu, query, refusal, vertices, wanted};
+use nearmiss_interop::{Element, Error, Input, update};
+use scene::{answer, detector, has_the_answer_of_the_cpu, refusal, vertices, wanted};
 use std::sync::Arc;
 
 fn stream() -> Arc<CudaStream> {
@@ -95,40 +95,10 @@ fn what_no_device_can_read_is_refused() {
 #[ignore = "needs a GPU"]
 fn submissions_own_their_arrays() {
     let stream = stream();
-    let array = || stream.clone_htod(&vertices(9.0)).expect("an array");
-    let make = || {
-        let (detector, cloth) = detector(device(&stream).expect("a device"));
-        let mut all = Submissions::new(detector, vec![(cloth, Place::Positions(array()))]);
-        all.prepare(&[query()]).expect("prepared");
-        all
-    };
-    let mut all = make();
-    for z in [0.05, 0.02, 0.04] {
-        if !all.detector().is_prepared() {
-            all.prepare(&[query()]).expect("prepared");
-        }
-        for (_, place) in all.views() {
-            let Place::Positions(mut view) = place else { panic!("one end") };
-            stream.memcpy_htod(&vertices(z), &mut view).expect("copied");
-        }
-        all.submit().expect("submitted");
-        let found = all.collect(&query()).expect("an answer");
-        assert_eq!((found.len(), found.hash()), wanted(z));
-    }
-    let (mut detector, arrays) = all.into_parts().expect("settled");
-    drop(arrays);
-    assert!(detector.submit().is_err());
-    assert_eq!(answer(&mut detector), wanted(0.04));
-    // Neither a drop with work on the stream nor a leak frees what is read.
-    for leaks in [false, true] {
-        let mut all = make();
-        (0..50).for_each(|_| all.submit().expect("submitted"));
-        if leaks {
-            std::mem::forget(all)
-        } else {
-            drop(all)
-        }
-        (0..20).for_each(|_| drop(array()));
-        stream.synchronize().expect("no kernel has read freed memory");
-    }
+    scene::own_their_arrays(
+        || device(&stream).expect("a device"),
+        || stream.clone_htod(&vertices(9.0)).expect("an array"),
+        |mut view, z| stream.memcpy_htod(&vertices(z), &mut view).expect("copied"),
+        || stream.synchronize().expect("no kernel has read freed memory"),
+    );
 }

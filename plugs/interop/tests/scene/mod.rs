@@ -4,7 +4,7 @@ use nearmiss::device::Backend;
 use nearmiss::mesh::Positions;
 use nearmiss::scene::{BodyId, Motion};
 use nearmiss::{Body, Detector, Device, Error, Mesh, Near, Query};
-use nearmiss_interop::{DeviceArray, Input, update};
+use nearmiss_interop::{DeviceArray, Input, OwnedArray, Place, Submissions, update};
 
 /// Vertices of a side.
 const SIDE: usize = 40;
@@ -65,4 +65,48 @@ pub fn has_the_answer_of_the_cpu<A: DeviceArray>(device: &Device, array: A, z: f
     // The positions have been read: they may be freed.
     drop(array);
     assert_eq!(answer(&mut detector), wanted(z));
+}
+
+/// Submissions read what kernels write, give both parts back, and free nothing that is read, also if
+/// they are dropped with work on the stream or leaked. `write` puts the vertices at a height.
+pub fn own_their_arrays<A: OwnedArray>(
+    device: impl Fn() -> Device,
+    array: impl Fn() -> A,
+    write: impl for<'a> Fn(A::View<'a>, f32),
+    synchronize: impl Fn(),
+) {
+    let make = || {
+        let (detector, cloth) = detector(device());
+        let mut all = Submissions::new(detector, vec![(cloth, Place::Positions(array()))]);
+        all.prepare(&[query()]).expect("prepared");
+        all
+    };
+    let mut all = make();
+    for z in [0.05, 0.02, 0.04] {
+        if !all.detector().is_prepared() {
+            all.prepare(&[query()]).expect("prepared");
+        }
+        for (_, place) in all.views() {
+            let Place::Positions(view) = place else { panic!("one end") };
+            write(view, z);
+        }
+        all.submit().expect("submitted");
+        let found = all.collect(&query()).expect("an answer");
+        assert_eq!((found.len(), found.hash()), wanted(z));
+    }
+    let (mut detector, arrays) = all.into_parts().expect("settled");
+    drop(arrays);
+    assert!(detector.submit().is_err());
+    assert_eq!(answer(&mut detector), wanted(0.04));
+    for leaks in [false, true] {
+        let mut all = make();
+        (0..50).for_each(|_| all.submit().expect("submitted"));
+        if leaks {
+            std::mem::forget(all)
+        } else {
+            drop(all)
+        }
+        (0..20).for_each(|_| drop(array()));
+        synchronize();
+    }
 }
