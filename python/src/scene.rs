@@ -32,7 +32,6 @@ use pyo3::types::{PyDict, PyTuple};
 /// - `thickness`: radius around the surface that belongs to the body, a length of at least 0; or one
 ///   for each vertex, in between linear. Near queries and queries in motion add those of both bodies
 ///   to their distance; all others ignore them.
-///
 /// - `edges`: (k, 2) integers. Edges of no face take part by themselves, as hair and threads do. Edges
 ///   of answers have their numbers in this list; those of faces that it lacks come behind, by
 ///   (larger vertex, smaller vertex).

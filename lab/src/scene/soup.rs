@@ -2,7 +2,7 @@
 
 use super::{Builder, Rng, cube_root_up, room};
 use nearmiss::Error;
-use nearmiss::mesh::{Body, Mesh, Positions};
+use nearmiss::mesh::{Body, Mesh};
 
 /// Makes exactly `n` random triangles in the unit cube, no two with a common vertex. They are
 /// still, or each corner moves on its own. Their size decreases with the cube root of `n`, so that
@@ -45,11 +45,10 @@ pub fn threads(n: usize, seed: u64) -> Result<Body, Error> {
         let (name, positions, _) = mesh.into_parts();
         Mesh::new(name, positions, faces)?.with_edges(edges)?.with_points(points)
     };
-    let mut ends = soup(n, seed, true)?.frames().into_iter().map(loose);
-    match (ends.next(), ends.next()) {
-        (Some(t0), Some(t1)) => Body::moving(t0?, t1?),
-        _ => Ok(Body::deformable(Mesh::new("threads", Positions::F32(Vec::new()), Vec::new())?)),
-    }
+    // A moving soup has two frames.
+    let mut ends = soup(n, seed, true)?.frames();
+    let end = loose(ends.swap_remove(1))?;
+    Body::moving(loose(ends.swap_remove(0))?, end)
 }
 
 pub(super) fn add(p: [f64; 3], q: [f64; 3]) -> [f64; 3] {
