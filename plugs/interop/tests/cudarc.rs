@@ -9,7 +9,7 @@ use nearmiss::Device;
 use nearmiss::device::Backend;
 use nearmiss_interop::cudarc::device;
 use nearmiss_interop::{Element, Error, Input, update};
-use scene::{answer, detector, has_the_answer_of_the_cpu, refusal, vertices, wanted};
+use scene::{answer, detector, has_the_answer_of_the_cpu, refusal, refused_by, vertices, wanted};
 use std::sync::Arc;
 
 fn stream() -> Arc<CudaStream> {
@@ -85,9 +85,9 @@ fn what_no_device_can_read_is_refused() {
     assert!(refusal(ours(), &theirs).contains("from one `CudaContext`"));
     let of_thread = device(&stream.context().per_thread_stream()).map(|_| ());
     assert!(matches!(of_thread, Err(Error::InvalidArgument { .. })));
-    let ready = ours();
+    let (mut ready, cloth) = detector(ours());
     stream.begin_capture(CU_STREAM_CAPTURE_MODE_THREAD_LOCAL).expect("a capture");
-    assert!(refusal(ready, &good).contains("while their stream is captured"));
+    assert!(refused_by(&mut ready, cloth, &good).contains("while their stream is captured"));
     stream.end_capture(CUgraphInstantiate_flags(0)).expect("a capture that goes on");
 }
 

@@ -49,10 +49,15 @@ pub fn wanted(z: f32) -> (usize, u64) {
     wanted
 }
 
-/// The error of an array that is refused.
+/// The error of an array that is refused by a new detector.
 pub fn refusal<A: DeviceArray>(device: Device, array: &A) -> String {
     let (mut detector, cloth) = detector(device);
-    let refused = update(&mut detector, &[(cloth, Input::positions(array))]);
+    refused_by(&mut detector, cloth, array)
+}
+
+/// The error of an array that is refused. It allocates and frees nothing, which a capture forbids.
+pub fn refused_by<A: DeviceArray>(detector: &mut Detector, cloth: BodyId, array: &A) -> String {
+    let refused = update(detector, &[(cloth, Input::positions(array))]);
     let error = refused.expect_err("an array to be refused");
     assert!(matches!(error, Error::InvalidArgument { .. } | Error::Input { .. }), "{error:?}");
     error.to_string()
