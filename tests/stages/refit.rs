@@ -107,7 +107,7 @@ fn machines_cannot_be_told_apart() {
     let bodies = [
         scene::single().expect("a scene"),
         scene::identical(3).expect("a scene"),
-        scene::soup(700, 9, false).expect("a scene"),
+        scene::soup(300, 9, false).expect("a scene"),
         deep(12),
     ];
     let seeds = 0..3u64;

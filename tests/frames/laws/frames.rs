@@ -260,11 +260,11 @@ fn renumbered(bodies: &[Placed], contacts: &Contacts) -> Rows {
 fn a_frame_depends_on_its_positions_alone() {
     let mut found = 0;
     for query in queries() {
-        for seed in 0..30 {
+        for seed in 0..12 {
             found += life(seed, query, |_| ()).unwrap_or_else(|difference| panic!("{difference}"));
         }
     }
-    assert!(found > 10_000, "{found}");
+    assert!(found > 4_000, "{found}");
 }
 
 /// A comparison that nothing passes would be none.

@@ -179,7 +179,7 @@ fn difference(when: &str, found: &OwnRows, wanted: &OwnRows) -> Option<String> {
 #[test]
 fn other_bodies_change_no_row() {
     let mut rows_found = 0;
-    for seed in 0..60 {
+    for seed in 0..24 {
         let mut rng = SmallRng::seed_from_u64(seed);
         let (own, others) = (own(&mut rng), others(&mut rng));
         for query in queries() {
@@ -188,7 +188,7 @@ fn other_bodies_change_no_row() {
         }
         rows_found += ask(&own, Query::continuous()).len();
     }
-    assert!(rows_found > 1_000, "{rows_found}");
+    assert!(rows_found > 400, "{rows_found}");
 }
 
 /// A body adds the caveat of long edges only if it may meet another, and is near it.

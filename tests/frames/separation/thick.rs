@@ -123,7 +123,7 @@ fn no_thick_pair_is_missed_or_late_or_falsely_certain() {
     for name in FAMILIES {
         let mut seen = [0; 4];
         let mut r = SmallRng::seed_from_u64(name.len() as u64);
-        for i in 0..150 {
+        for i in 0..60 {
             let features = [Features::VertexFace, Features::EdgeEdge][i % 2];
             let ends = family(&mut r, name);
             let at = |t: f64| Places::at(features, ends, t, [0.0; 4]).least().to_f64().sqrt();

@@ -38,7 +38,7 @@ fn corners<R: Real, S: Grid, const N: usize>(
     planted: f64,
 ) -> f64 {
     let (mut most, mut by) = (0f64, [0; 2]);
-    for i in 0..800 {
+    for i in 0..400 {
         let mut point = || Vec3(std::array::from_fn(|_| R::of(coordinate(r, i % 4))));
         let x: [Moving<R>; 4] = std::array::from_fn(|_| Moving { t0: point(), t1: point() });
         let m = build(x);

@@ -87,7 +87,7 @@ fn rows_are_those_of_all_pairs_of_triangles() {
             let scene = scene(&mut rng, kinds, 14, place, filters);
             let mut detector = Detector::new(engine(), scene).expect("a detector");
             let mut all = [0; 2];
-            for frame in 0..3 {
+            for frame in 0..2 {
                 let next = Next::of(&mut rng, detector.scene(), place);
                 detector.update(&next.motions()).expect("moved");
                 let found = judged(&mut detector, &[0.0, 0.3, 2.0, 1e9, 0.05]);

@@ -43,7 +43,7 @@ const KINDS: [u32; 5] = [1, 2, 4, 8, 15];
 fn an_answer_is_the_one_without_exclusions_less_their_rows() {
     for bits in KINDS {
         let mut left = vec![[0; 2]; queries().len()];
-        for seed in 0..16 {
+        for seed in 0..6 {
             let scene = crumpled(seed, bits);
             for (query, left) in queries().into_iter().zip(&mut left) {
                 assert_eq!(fault(engine(), &scene, query), None, "kinds {bits}, seed {seed}, {query:?}");
@@ -55,7 +55,7 @@ fn an_answer_is_the_one_without_exclusions_less_their_rows() {
         for (query, [before, behind]) in queries().into_iter().zip(left) {
             let is_listed = query.kind() != QueryKind::Earliest;
             assert!(
-                !is_listed || behind > 100 && behind + 50 < before,
+                !is_listed || behind > 40 && behind + 20 < before,
                 "kinds {bits}, {query:?}: {before}, {behind}"
             );
         }

@@ -106,7 +106,7 @@ fn far_away_they_are_too() {
     let mut rng = SmallRng::seed_from_u64(13);
     for world in FAR {
         let mut rows = 0;
-        for count in [6, 9] {
+        for count in [4, 7] {
             let scene = scene(&mut rng, world, count, false);
             let mut both = Both::new(&engine(), &scene);
             let motions = poses(&mut rng, &scene, world);

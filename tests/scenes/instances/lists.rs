@@ -19,7 +19,7 @@ fn lists_grow_until_nothing_is_dropped() {
     // Two equal spheres in nearly one place: each triangle meets its neighbours. Many in one place:
     // all pairs of bodies meet.
     for (mesh, count, apart) in
-        [(sphere(60, 1.0, [0.0; 3]), 2, 1e-3), (sphere(6, 1.0, [0.0; 3]), 150, 1e-4), (cube(1.0), 300, 0.004)]
+        [(sphere(60, 1.0, [0.0; 3]), 2, 1e-3), (sphere(6, 1.0, [0.0; 3]), 80, 1e-4), (cube(1.0), 150, 0.004)]
     {
         let (scene, motions) = row(&mesh, count, apart);
         let mut both = Both::new(&engine(), &scene);
