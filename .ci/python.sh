@@ -1,7 +1,10 @@
 #!/usr/bin/env bash
 # The Python module as a user gets it: a wheel, installed into an empty environment, which runs its README and the book.
+# `.ci/python.sh [all]`: with `all` also the tests that need large libraries, with those alone.
 #
 # Rationale
+# - Without `all` there are ipctk, trimesh, coal, FCL and libigl. Warp, JAX, torch, Blender, Dask and Ray are a gigabyte and
+#   minutes: they are for the nightly part. Their tests say that they were skipped.
 # - The profile is cargo's `dev`, which is optimised: what is tested is what is built anyway.
 # - The environment is new each time; nothing of this machine's Python is seen.
 # - Tests that need a GPU say that they were skipped. They run where there is one: see docs/internals/toolchain.md.
@@ -38,7 +41,17 @@ trimesh=trimesh-$("$folder/user/bin/python" -c 'import trimesh; print(trimesh.__
 "$folder/user/bin/pip" -q download --no-binary trimesh --no-deps --dest "$folder" "${trimesh/-/==}"
 tar -xzf "$folder/$trimesh.tar.gz" -C "$folder"
 "$folder/user/bin/python" -m mypy --no-error-summary python/tests/typed.py
-"$folder/user/bin/pip" -q install warp-lang jax && { "$folder/user/bin/pip" -q --retries 0 install --index-url https://download.pytorch.org/whl/cpu torch 2>/dev/null || "$folder/user/bin/pip" -q install torch; }
+# As the tests have it: -p would choose other features of what others need, which is a second build.
+cargo build --locked --lib --bins --examples
+export NEARMISS_PROGRAM=$target/debug/nearmiss
+NEARMISS_TRIMESH_TESTS=$folder/$trimesh/tests/test_collision.py \
+    "$folder/user/bin/python" -m pytest -q -rs --durations=10 python
+[ "${1:-}" = all ] || exit 0
+
+"$folder/user/bin/pip" -q install warp-lang jax
+"$folder/user/bin/pip" -q --retries 0 install --index-url https://download.pytorch.org/whl/cpu torch 2>/dev/null \
+    || "$folder/user/bin/pip" -q install torch
+"$folder/user/bin/python" -m pytest -q -rs python/tests/test_{arrays,gpu,libraries,loops}.py
 # Blender is large, needs an old numpy, and exists for few versions of Python.
 wheel=$(echo "$folder"/wheels/nearmiss-*.whl)
 python3 -m venv "$folder/blender"
@@ -50,8 +63,4 @@ fi
 python3 -m venv "$folder/clusters"
 # Ray 2.60 waits 15 seconds for an agent of its own, and gives up on a busy machine.
 "$folder/clusters/bin/pip" -q install "$wheel" 'pytest>=8' 'dask[distributed]' 'ray==2.44.1'
-# As the tests have it: -p would choose other features of what others need, which is a second build.
-cargo build --locked --lib --bins --examples
-NEARMISS_PROGRAM=$target/debug/nearmiss "$folder/clusters/bin/python" -m pytest -q -rs python/tests/test_clusters.py
-NEARMISS_TRIMESH_TESTS=$folder/$trimesh/tests/test_collision.py NEARMISS_PROGRAM=$target/debug/nearmiss \
-    "$folder/user/bin/python" -m pytest -q -rs python
+"$folder/clusters/bin/python" -m pytest -q -rs python/tests/test_clusters.py
