@@ -176,8 +176,12 @@ impl Body {
         named.set_item("name", own.name())?;
         named.set_item("pose", body.getattr("pose")?)?;
         named.set_item("thickness", body.getattr("thickness")?)?;
-        named.set_item("edges", body.getattr("edges")?)?;
-        named.set_item("points", body.getattr("points")?)?;
+        for list in ["edges", "points"] {
+            let given = body.getattr(list)?;
+            if given.len()? > 0 {
+                named.set_item(list, given)?;
+            }
+        }
         remade(body.get_type(), mesh, named)
     }
 
