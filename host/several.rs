@@ -2,6 +2,7 @@
 
 mod cuts;
 mod edits;
+mod first;
 mod interrupted;
 mod left_out;
 mod tiles;

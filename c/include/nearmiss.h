@@ -1121,6 +1121,18 @@ NearmissCode nearmiss_detector_query(NearmissDetector *detector,
                                      NearmissAnswer **answer,
                                      NearmissError *error);
 
+// The contacts at the time of an answer to an earliest query: the rows of the continuous query with
+// the same options whose time it is. Read them by `nearmiss_answer_contacts`. The bodies must be
+// where they were at the query. The step is tested again, up to that time; with a minimum
+// separation, all of it.
+//
+// Fails with `NEARMISS_INVALID_ARGUMENT` for an answer to another query, and if nothing begins at
+// that time where the bodies are now.
+NearmissCode nearmiss_detector_first_contacts(NearmissDetector *detector,
+                                              const NearmissAnswer *first,
+                                              NearmissAnswer **answer,
+                                              NearmissError *error);
+
 // Updates and queries in one submission: `nearmiss_detector_update`, then
 // `nearmiss_detector_query`. An error of the motions or of the query's numbers has moved nothing.
 //

@@ -110,6 +110,26 @@ pub unsafe extern "C" fn nearmiss_detector_query(
     })
 }
 
+/// The contacts at the time of an answer to an earliest query: the rows of the continuous query with
+/// the same options whose time it is. Read them by `nearmiss_answer_contacts`. The bodies must be
+/// where they were at the query. The step is tested again, up to that time; with a minimum
+/// separation, all of it.
+///
+/// Fails with `NEARMISS_INVALID_ARGUMENT` for an answer to another query, and if nothing begins at
+/// that time where the bodies are now.
+#[unsafe(no_mangle)]
+pub extern "C" fn nearmiss_detector_first_contacts(
+    detector: Option<&mut NearmissDetector>,
+    first: Option<&NearmissAnswer>,
+    answer: Option<&mut MaybeUninit<*mut NearmissAnswer>>,
+    error: Option<&mut MaybeUninit<NearmissError>>,
+) -> NearmissCode {
+    NearmissDetector::answer(detector, answer, error, |own| {
+        let first = given(first, "first")?;
+        own.detector.first_contacts(&first.found).map(Contacts::from)
+    })
+}
+
 /// Updates and queries in one submission: `nearmiss_detector_update`, then
 /// `nearmiss_detector_query`. An error of the motions or of the query's numbers has moved nothing.
 ///

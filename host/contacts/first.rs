@@ -1,4 +1,8 @@
-//! The first contact of a step.
+//! The first contact of a step, and the contacts at its time.
+
+use super::{Answer, Caveat, Contact, Contacts, RowList, Rows, Status};
+use crate::error::Error;
+use crate::query::{Continuous, Query};
 
 /// First contact of a step: the answer to an earliest query.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,4 +13,93 @@ pub struct FirstContact {
     pub toi: f64,
     /// Whether the pair at that time is undecided and no contact begins then.
     pub is_undecided: bool,
+}
+
+mod sealed {
+    pub trait Sealed {}
+}
+
+impl sealed::Sealed for Option<FirstContact> {}
+impl sealed::Sealed for Rows {}
+
+/// Rows of an earliest query: see [`Detector::first_contacts`](crate::Detector::first_contacts).
+pub trait First: sealed::Sealed {
+    /// The earliest time.
+    #[doc(hidden)]
+    fn toi(&self) -> Option<f64>;
+}
+
+impl First for Option<FirstContact> {
+    fn toi(&self) -> Option<f64> {
+        self.map(|first| first.toi)
+    }
+}
+
+impl First for Rows {
+    fn toi(&self) -> Option<f64> {
+        self.earliest_toi()
+    }
+}
+
+impl From<Answer<RowList<Contact>>> for Contacts {
+    fn from(answer: Answer<RowList<Contact>>) -> Contacts {
+        let Answer { rows, query, starts_crossing, undecided, stats, caveats, is_free } = answer;
+        Answer { rows: Rows::Contacts(rows), query, starts_crossing, undecided, stats, caveats, is_free }
+    }
+}
+
+impl<T: First> Answer<T> {
+    /// Returns the query of the contacts that begin by the earliest time; `None` if nothing meets.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] for an answer to another query.
+    pub(crate) fn query_of_first(&self) -> Result<Option<Continuous>, Error> {
+        let Query::Earliest(earliest) = &self.query else {
+            return Err(Error::InvalidArgument {
+                what: format!("first contacts of the answer to a {} query", self.query.kind()),
+                advice: "give the answer to an earliest query".into(),
+            });
+        };
+        Ok(self.rows.toi().map(|toi| earliest.contacts_until(toi)))
+    }
+
+    /// Returns the contacts that begin at the earliest time, of those that begin by it.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] if there are none: bodies have moved since.
+    pub(crate) fn first_of(&self, all: Contacts) -> Result<Answer<RowList<Contact>>, Error> {
+        let (toi, mut query) = (self.rows.toi(), all.query);
+        if let Query::Continuous(continuous) = &mut query {
+            continuous.until = None;
+        }
+        let first: Vec<Contact> =
+            all.rows.contacts().iter().filter(|row| Some(row.toi) == toi).copied().collect();
+        if let (true, Some(toi)) = (first.is_empty(), toi) {
+            return Err(Error::InvalidArgument {
+                what: format!(
+                    "first contacts at t = {toi}, where the bodies are now, of which there are none"
+                ),
+                advice: "call it before the bodies move".into(),
+            });
+        }
+        let undecided = first.iter().filter(|row| row.status == Status::Undecided).count() as u64;
+        // Counts of caveats are of all that were tested.
+        let mut caveats = all.caveats;
+        caveats.retain(|caveat| !matches!(caveat, Caveat::Undecided { .. } | Caveat::Iterations { .. }));
+        for caveat in &mut caveats {
+            if let Caveat::ToleranceBelowPrecision { pairs } = caveat {
+                *pairs = None;
+            }
+        }
+        caveats.extend((undecided > 0).then_some(Caveat::Undecided { pairs: undecided }));
+        Ok(Answer {
+            rows: first.into(),
+            query,
+            starts_crossing: self.starts_crossing,
+            undecided,
+            stats: all.stats,
+            caveats,
+            is_free: self.is_free,
+        })
+    }
 }

@@ -132,7 +132,9 @@ impl sealed::Rows for Rows {
             Rows::Contacts(contacts) => return contacts.inputs(),
             Rows::Near(pairs) => return pairs.inputs(),
             Rows::Pairs(pairs) => return pairs.inputs(),
-            Rows::Earliest(_) => ("an earliest", "use a continuous query; this answer has only a time"),
+            Rows::Earliest(_) => {
+                ("an earliest", "use that of its `first_contacts`; this answer has only a time")
+            }
             Rows::Distance(_) => {
                 ("a distance", "read `points` and `weights` of this answer's nearest triangles")
             }

@@ -24,7 +24,7 @@ pub(crate) mod work;
 pub use bodies::BodyPair;
 pub use caveats::{Caveat, TURN_DEGREES};
 pub use curves::{Curve, Curves, crossing_curves};
-pub use first::FirstContact;
+pub use first::{First, FirstContact};
 pub use geometry::ContactGeometry;
 pub use grouped::{GroupBy, Grouped};
 pub use located::{Geometry, Located};

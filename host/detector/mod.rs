@@ -5,6 +5,7 @@ mod caveats;
 mod edits;
 mod engine;
 mod figures;
+mod first;
 mod frame;
 mod geometry;
 mod grouped;

@@ -26,6 +26,8 @@ pub struct Continuous {
     /// pairs that share a point at t = 0 are counted:
     /// [`Answer::starts_crossing`](crate::Answer::starts_crossing).
     pub(crate) assume_free: bool,
+    /// The time in \[0, 1\] behind which contacts need not be listed; `None` for the whole step.
+    pub(crate) until: Option<f64>,
 }
 
 /// Time of the first contact of a step, which is how far the step may go. Never late.
@@ -222,6 +224,14 @@ macro_rules! in_motion {
             }
         }
     };
+}
+
+impl Earliest {
+    /// Returns the continuous query with the same options. It lists at least the contacts that begin
+    /// by a time, and does not check the start again.
+    pub(crate) fn contacts_until(&self, toi: f64) -> Continuous {
+        Continuous { solver: self.solver, search: self.search, assume_free: true, until: Some(toi) }
+    }
 }
 
 in_motion!(Continuous, contact_rows);

@@ -209,6 +209,9 @@ impl Query {
         if let Query::Near(near) = &mut shape {
             near.distance = Near::DISTANCE;
         }
+        if let Query::Continuous(continuous) = &mut shape {
+            continuous.until = continuous.until.map(|_| 1.0);
+        }
         if let Query::BodyPairs(pairs) = &mut shape {
             pairs.first = None;
         }

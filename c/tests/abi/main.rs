@@ -5,6 +5,7 @@ mod approaching;
 mod bodies;
 mod elements;
 mod exclusions;
+mod first;
 mod interrupted;
 mod left_out;
 mod one_detector;

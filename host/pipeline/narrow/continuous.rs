@@ -56,7 +56,7 @@ pub struct ContinuousNarrow {
     is_thick: bool,
     /// The smallest toi, for an earliest query.
     earliest: Option<Buffer<u64>>,
-    /// The smallest toi of a sample, if it bounds the query.
+    /// The smallest toi of a sample, or a given time, if it bounds the query.
     bound: Option<Buffer<u64>>,
     /// All contacts in order, if the device orders them.
     ordered: Option<Order<Hit>>,
@@ -151,7 +151,19 @@ impl ContinuousNarrow {
         self.solver.certified().is_some()
     }
 
-    /// Returns the time that a sample has found, if it bounds the other pairs.
+    /// Takes memory for a time that bounds the pairs. Only isolation has a time before which there is
+    /// no answer: other solvers test all.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn take_bound(&mut self, device: &Device) -> Result<(), Error> {
+        if self.solver.certified().is_some_and(|certified| !certified.is_apart()) {
+            self.bound = Some(device.of(purpose::EARLIEST).buffer(earliest::WORDS as usize)?);
+        }
+        Ok(())
+    }
+
+    /// Returns the time that bounds the pairs; a sample has none.
     fn known(&self, is_sample: bool) -> Span<u64> {
         self.bound.as_ref().filter(|_| !is_sample).map_or(Span::EMPTY, Buffer::span)
     }
@@ -287,12 +299,11 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
     }
 
     fn take_samples(&mut self, device: &Device) -> Result<(), Error> {
-        // Only isolation has a time before which there is no answer.
-        let isolates = self.solver.certified().is_some_and(|certified| !certified.is_apart());
-        if self.earliest.is_some() && isolates {
-            self.bound = Some(device.of(purpose::EARLIEST).buffer(earliest::WORDS as usize)?);
-        }
-        Ok(())
+        if self.earliest.is_some() { self.take_bound(device) } else { Ok(()) }
+    }
+
+    fn samples(&self) -> bool {
+        self.earliest.is_some() && self.bound.is_some()
     }
 
     fn checks_start(&self) -> bool {
@@ -304,6 +315,10 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
     }
 
     fn set(&mut self, device: &Device, query: &Query, tolerances: &[BodyTolerance]) -> Result<(), Error> {
+        if let (Query::Continuous(continuous), Some(bound)) = (query, &mut self.bound) {
+            let toi = continuous.until.unwrap_or(1.0);
+            bound.write(&[toi.to_bits(), earliest::key(toi, true), u64::MAX])?;
+        }
         let Some(certified) = query.certified() else { return Ok(()) };
         self.solver = (*certified).into();
         self.finest = tolerances.iter().map(|record| record.tolerance).reduce(f64::min);

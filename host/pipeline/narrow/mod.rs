@@ -86,8 +86,13 @@ pub trait Narrow<R: Precision>: Send {
         Ok(())
     }
 
-    /// Returns the place of the bound of the earliest time that a sample finds; `None` if there is
-    /// none.
+    /// Returns whether a sample bounds the candidates.
+    fn samples(&self) -> bool {
+        false
+    }
+
+    /// Returns the place of the time that bounds the candidates, of a sample or given; `None` if
+    /// there is none.
     fn bound(&self) -> Option<Span<u64>> {
         None
     }
@@ -172,7 +177,11 @@ pub fn narrow<R: Precision>(
             Box::new(narrow)
         }
         Query::Continuous(continuous) => {
-            let narrow = ContinuousNarrow::all(device, continuous.solver, few)?.of_thick(device, layout)?;
+            let mut narrow =
+                ContinuousNarrow::all(device, continuous.solver, few)?.of_thick(device, layout)?;
+            if continuous.until.is_some() {
+                narrow.take_bound(device)?;
+            }
             Box::new(in_motion::<R>(narrow, device, (query.checks_start(), excludes), few)?)
         }
         Query::Earliest(earliest) => {

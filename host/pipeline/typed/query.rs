@@ -203,7 +203,7 @@ impl<R: Precision> QueryMemory<R> {
     /// Tests a sample, if its answer bounds the whole. Its counts are discarded: too little room
     /// gives a weaker bound, never a wrong one.
     fn sample(&mut self, scene: &mut SceneMemory<R>) -> Result<(), Error> {
-        if self.narrow.bound().is_none() {
+        if !self.narrow.samples() {
             return Ok(());
         }
         self.step(scene, Step::Sample)?;
