@@ -19,6 +19,11 @@ pub struct QueryArgs {
     /// Find the first time of contact: the largest safe step
     #[arg(long)]
     pub earliest: bool,
+    /// List the features that meet at that time (with --earliest)
+    ///
+    /// They are the rows of --continuous whose time it is. The step is tested again, up to that time.
+    #[arg(long, requires = "earliest", hide_short_help = true)]
+    pub first_contacts: bool,
     /// Find features within the distance L at t = 0, and where
     #[arg(long, value_name = "L", allow_hyphen_values = true,
         conflicts_with_all = ["discrete", "continuous", "earliest"])]

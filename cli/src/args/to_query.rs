@@ -52,7 +52,8 @@ impl DetectArgs {
         }
         let query = self.of_kind(kind, solver);
         query.check()?;
-        self.places(kind, solver.is_certain())?;
+        let shown = if self.query.first_contacts { QueryKind::Continuous } else { kind };
+        self.places(shown, solver.is_certain())?;
         if self.query.adjacent && (solver != Solver::Exact || kind.is_of_bodies()) {
             let what = format!("--adjacent cannot be used with a {kind} query by {solver}");
             return refused(what, "use --discrete with the solver exact");
@@ -114,7 +115,7 @@ impl DetectArgs {
             ),
             QueryKind::Earliest if vtp || self.out.geometry => refused(
                 format!("a .vtp and --geometry need points, and a {kind} query has none"),
-                "use --continuous or --near, or --out-mesh for a coloured mesh",
+                "add --first-contacts, or use --continuous or --near",
             ),
             QueryKind::Discrete if !is_certain && (vtp || self.out.geometry) => refused(
                 "a .vtp and --geometry need common points, and pairs by the solver moller may have none",

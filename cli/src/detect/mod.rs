@@ -136,6 +136,17 @@ pub fn promise(query: &Query) {
     }
 }
 
+/// The answer that is shown: with `--first-contacts` the contacts at an earliest time.
+///
+/// # Errors
+/// Those of the device.
+pub fn shown(args: &DetectArgs, detector: &mut OneQuery, found: Contacts) -> Result<Contacts, Error> {
+    match args.query.first_contacts {
+        true => detector.first_contacts(&found).map(Contacts::from),
+        false => Ok(found),
+    }
+}
+
 /// Refuses to write over what is read.
 ///
 /// # Errors
@@ -188,6 +199,7 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
     let often = if research.only.is_some() { 1 } else { research.repeat };
     let is_gpu = device.is_gpu();
     let (contacts, times) = during("detecting", || repeated(&mut detector, often, is_gpu))?;
+    let contacts = shown(args, &mut detector, contacts)?;
     let mut summary = detector.summary(&contacts);
     summary.ms = times;
     if let Some(stage) = research.only {

@@ -4,7 +4,7 @@ use super::film::Moment;
 use super::lines::{Total, line, untested};
 use super::{Sequence, Walk, check_name};
 use crate::args::DetectArgs;
-use crate::detect::{Places, places, promise};
+use crate::detect::{Places, places, promise, shown};
 use crate::output::{Stop, Target, print};
 use crate::paint::{self, Paint};
 use crate::report::{FileFaces, Format, Report};
@@ -173,6 +173,7 @@ impl Steps<'_> {
     /// Runs a step, and writes its rows and its mesh.
     fn step(&mut self, moment: &Moment, out: &mut Out, mesh: Option<Target>) -> Result<Report, Stop> {
         let found = self.walk.at(moment.step)?;
+        let found = shown(self.args, &mut self.walk.detector, found)?;
         let mut report = self.report(moment, &found);
         let places = places(self.args, &mut self.walk.detector, &found)?;
         if let Some(target) = mesh {

@@ -164,6 +164,7 @@ fn every_option_changes_something_or_is_refused() {
         ("detect", scene.clone(), no.clone(), vec!["--min-separation", "0.1"]),
         ("detect", [&scene[..], &["--min-separation", "0.1"]].concat(), no.clone(), vec!["--approaching"]),
         ("detect", scene.clone(), no.clone(), vec!["--assume-free"]),
+        ("detect", files.clone(), vec!["--earliest"], vec!["--earliest", "--first-contacts"]),
         ("detect", scene.clone(), no.clone(), vec!["--backend", "auto"]),
         ("detect", scene.clone(), vec!["--threads", "1"], vec!["--threads", "2"]),
         ("detect", vec![&fan, "--json"], no.clone(), vec!["--adjacent"]),
