@@ -2,6 +2,7 @@
 
 use crate::detector::{Answered, Detector};
 use crate::query::{Accuracy, body_distances, body_pairs, discrete, first_of, iterations_of, near};
+use crate::rows::FirstContact;
 use pyo3::prelude::*;
 
 #[pymethods]
@@ -70,6 +71,19 @@ impl Detector {
     ) -> Answered<'py> {
         let accuracy = Accuracy { tolerance, min_separation, max_iterations, assume_free, approaching };
         self.answer_to(py, accuracy.earliest()?)
+    }
+
+    /// Return the contacts at the time of an earliest answer: the answer to Continuous, without the
+    /// rows of later times.
+    ///
+    /// - `first`: FirstContact of this detector. Bodies must not have moved since.
+    ///
+    /// It tests the step again, up to that time. With a `min_separation` it tests all of it.
+    /// Raises InvalidArgumentError if nothing begins at that time where the bodies are now.
+    fn first_contacts<'py>(&self, py: Python<'py>, first: PyRef<'_, FirstContact>) -> Answered<'py> {
+        self.answer_about(py, first.as_super(), |detector, found| {
+            detector.first_contacts(found).map(nearmiss::Contacts::from)
+        })
     }
 
     /// Return the nearest two bodies at t = 0, and their distance: the answer to Distance.

@@ -80,6 +80,24 @@ impl Detector {
         done.map_err(raised)
     }
 
+    /// The answer to a query about another answer of this detector, of the bodies where they are.
+    pub fn answer_about<'py>(
+        &self,
+        py: Python<'py>,
+        about: &Answer,
+        call: impl FnOnce(&mut nearmiss::Detector, &nearmiss::Contacts) -> Result<nearmiss::Contacts, Error>
+        + Send,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (answer, stamp, names) = self.work(py, |one| {
+            let answer = one.check(about.stamp).and_then(|()| {
+                one.count(Does::Queries);
+                call(&mut one.detector, &about.contacts)
+            });
+            (answer, one.stamp(), one.names())
+        })?;
+        typed(py, answer.map_err(raised)?, stamp, names)
+    }
+
     /// Looks at the detector.
     pub fn look<T: Send>(
         &self,
