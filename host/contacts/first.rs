@@ -2,7 +2,7 @@
 
 use super::{Answer, Caveat, Contact, Contacts, RowList, Rows, Status};
 use crate::error::Error;
-use crate::query::{Continuous, Query};
+use crate::query::Query;
 
 /// First contact of a step: the answer to an earliest query.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,32 +49,29 @@ impl From<Answer<RowList<Contact>>> for Contacts {
 }
 
 impl<T: First> Answer<T> {
-    /// Returns the query of the contacts that begin by the earliest time; `None` if nothing meets.
+    /// Returns the contacts that begin at the earliest time. `ask` answers the query of those that
+    /// begin by it.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for an answer to another query.
-    pub(crate) fn query_of_first(&self) -> Result<Option<Continuous>, Error> {
+    /// [`Error::InvalidArgument`] for an answer to another query, and if nothing begins at that time:
+    /// bodies have moved since. Those of `ask`.
+    pub(crate) fn first_contacts(
+        &self,
+        ask: impl FnOnce(&Query) -> Result<Contacts, Error>,
+    ) -> Result<Answer<RowList<Contact>>, Error> {
         let Query::Earliest(earliest) = &self.query else {
             return Err(Error::InvalidArgument {
                 what: format!("first contacts of the answer to a {} query", self.query.kind()),
                 advice: "give the answer to an earliest query".into(),
             });
         };
-        Ok(self.rows.toi().map(|toi| earliest.contacts_until(toi)))
-    }
-
-    /// Returns the contacts that begin at the earliest time, of those that begin by it.
-    ///
-    /// # Errors
-    /// [`Error::InvalidArgument`] if there are none: bodies have moved since.
-    pub(crate) fn first_of(&self, all: Contacts) -> Result<Answer<RowList<Contact>>, Error> {
-        let (toi, mut query) = (self.rows.toi(), all.query);
-        if let Query::Continuous(continuous) = &mut query {
-            continuous.until = None;
-        }
-        let first: Vec<Contact> =
-            all.rows.contacts().iter().filter(|row| Some(row.toi) == toi).copied().collect();
-        if let (true, Some(toi)) = (first.is_empty(), toi) {
+        let query = earliest.contacts().into();
+        let Some(toi) = self.rows.toi() else {
+            return Ok(self.with(Vec::new(), Contacts::none(query)));
+        };
+        let all = ask(&earliest.contacts_until(toi).into())?;
+        let first: Vec<Contact> = all.contacts().iter().filter(|row| row.toi == toi).copied().collect();
+        if first.is_empty() {
             return Err(Error::InvalidArgument {
                 what: format!(
                     "first contacts at t = {toi}, where the bodies are now, of which there are none"
@@ -82,7 +79,13 @@ impl<T: First> Answer<T> {
                 advice: "call it before the bodies move".into(),
             });
         }
-        let undecided = first.iter().filter(|row| row.status == Status::Undecided).count() as u64;
+        Ok(self.with(first, Contacts { query, ..all }))
+    }
+
+    /// Returns an answer with these rows, which are a part of all. What is known of the start is that
+    /// of this answer.
+    fn with(&self, rows: Vec<Contact>, all: Contacts) -> Answer<RowList<Contact>> {
+        let undecided = rows.iter().filter(|row| row.status == Status::Undecided).count() as u64;
         // Counts of caveats are of all that were tested.
         let mut caveats = all.caveats;
         caveats.retain(|caveat| !matches!(caveat, Caveat::Undecided { .. } | Caveat::Iterations { .. }));
@@ -92,14 +95,14 @@ impl<T: First> Answer<T> {
             }
         }
         caveats.extend((undecided > 0).then_some(Caveat::Undecided { pairs: undecided }));
-        Ok(Answer {
-            rows: first.into(),
-            query,
+        Answer {
+            rows: rows.into(),
+            query: all.query,
             starts_crossing: self.starts_crossing,
             undecided,
             stats: all.stats,
             caveats,
             is_free: self.is_free,
-        })
+        }
     }
 }

@@ -1,9 +1,8 @@
 //! The contacts at the earliest time of a step.
 
 use super::Detector;
-use crate::contacts::{Answer, Contact, Contacts, First, RowList};
+use crate::contacts::{Answer, Contact, First, RowList};
 use crate::error::Error;
-use crate::query::{Continuous, Query};
 
 impl Detector {
     /// Returns the contacts at the time of an earliest answer: the rows of the continuous query with
@@ -33,12 +32,6 @@ impl Detector {
     /// [`Error::InvalidArgument`] for an answer to another query, and if nothing begins at that time
     /// where the bodies are now. Others as of [`Detector::query`].
     pub fn first_contacts<T: First>(&mut self, first: &Answer<T>) -> Result<Answer<RowList<Contact>>, Error> {
-        match first.query_of_first()? {
-            Some(query) => {
-                let all = self.query(&Query::from(query))?;
-                first.first_of(all)
-            }
-            None => first.first_of(Contacts::none(Continuous::default().into())),
-        }
+        first.first_contacts(|query| self.query(query))
     }
 }

@@ -227,10 +227,14 @@ macro_rules! in_motion {
 }
 
 impl Earliest {
-    /// Returns the continuous query with the same options. It lists at least the contacts that begin
-    /// by a time, and does not check the start again.
+    /// Returns the continuous query with the same options, which does not check the start again.
+    pub(crate) fn contacts(&self) -> Continuous {
+        Continuous { solver: self.solver, search: self.search, assume_free: true, until: None }
+    }
+
+    /// Returns the one that lists at least the contacts that begin by a time.
     pub(crate) fn contacts_until(&self, toi: f64) -> Continuous {
-        Continuous { solver: self.solver, search: self.search, assume_free: true, until: Some(toi) }
+        Continuous { until: Some(toi), ..self.contacts() }
     }
 }
 
