@@ -82,8 +82,7 @@ impl<T: First> Answer<T> {
         Ok(self.with(first, Contacts { query, ..all }))
     }
 
-    /// Returns an answer with these rows, which are a part of all. What is known of the start is that
-    /// of this answer.
+    /// Returns an answer with these rows, which are a part of all. The start is as this answer has it.
     fn with(&self, rows: Vec<Contact>, all: Contacts) -> Answer<RowList<Contact>> {
         let undecided = rows.iter().filter(|row| row.status == Status::Undecided).count() as u64;
         // Counts of caveats are of all that were tested.

@@ -226,6 +226,11 @@ impl Query {
         shape
     }
 
+    /// Returns the time behind which contacts need not be listed; `None` for the whole step.
+    pub(crate) fn until(&self) -> Option<f64> {
+        if let Query::Continuous(continuous) = self { continuous.until } else { None }
+    }
+
     /// Returns whether it can read rigid and fixed bodies as instances of their meshes: without a
     /// choice of how candidates are found, a discrete query by exact signs, a near query, and one in
     /// motion by a certified solver beyond f32 and without a limit of work. A query of pairs of bodies

@@ -1,6 +1,7 @@
 //! Moving features: their lists, and the launches from triangle pairs to contacts, or to the first
 //! of them.
 
+mod bound;
 mod steps;
 
 use super::exclude::Kept;
@@ -151,23 +152,6 @@ impl ContinuousNarrow {
         self.solver.certified().is_some()
     }
 
-    /// Takes memory for a time that bounds the pairs. Only isolation has a time before which there is
-    /// no answer: other solvers test all.
-    ///
-    /// # Errors
-    /// Device errors.
-    pub fn take_bound(&mut self, device: &Device) -> Result<(), Error> {
-        if self.solver.certified().is_some_and(|certified| !certified.is_apart()) {
-            self.bound = Some(device.of(purpose::EARLIEST).buffer(earliest::WORDS as usize)?);
-        }
-        Ok(())
-    }
-
-    /// Returns the time that bounds the pairs; a sample has none.
-    fn known(&self, is_sample: bool) -> Span<u64> {
-        self.bound.as_ref().filter(|_| !is_sample).map_or(Span::EMPTY, Buffer::span)
-    }
-
     /// Returns the pairs that the solver tests.
     fn tested<'a>(&'a self, features: &'a Features) -> [&'a List<Pair>; 2] {
         self.kept.as_ref().map_or_else(|| self.may_meet(features), Kept::lists)
@@ -315,10 +299,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
     }
 
     fn set(&mut self, device: &Device, query: &Query, tolerances: &[BodyTolerance]) -> Result<(), Error> {
-        if let (Query::Continuous(continuous), Some(bound)) = (query, &mut self.bound) {
-            let toi = continuous.until.unwrap_or(1.0);
-            bound.write(&[toi.to_bits(), earliest::key(toi, true), u64::MAX])?;
-        }
+        self.bind(query)?;
         let Some(certified) = query.certified() else { return Ok(()) };
         self.solver = (*certified).into();
         self.finest = tolerances.iter().map(|record| record.tolerance).reduce(f64::min);
