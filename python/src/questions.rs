@@ -73,12 +73,12 @@ impl Detector {
         self.answer_to(py, accuracy.earliest()?)
     }
 
-    /// Return the contacts at the time of an earliest answer: the answer to Continuous, without the
-    /// rows of later times.
+    /// Return the contacts at the time of an earliest answer, as an answer to Continuous.
     ///
     /// - `first`: FirstContact of this detector. Bodies must not have moved since.
     ///
-    /// It tests the step again, up to that time. With a `min_separation` it tests all of it.
+    /// They are the rows of Continuous whose `toi` it is. The step is tested again, up to that time; with a
+    /// `min_separation` all of it.
     /// Raises InvalidArgumentError if nothing begins at that time where the bodies are now.
     fn first_contacts<'py>(&self, py: Python<'py>, first: PyRef<'_, FirstContact>) -> Answered<'py> {
         self.answer_about(py, first.as_super(), |detector, found| {

@@ -26,7 +26,7 @@ def test_the_corners_that_land_first_are_named():
     everything = made.continuous()
     assert set(contacts.toi) == {first.toi}
     assert len(contacts) == (everything.toi == first.toi).sum() < len(everything)
-    vertices = contacts.feature_a[contacts.kind == nm.Kind.VF]
+    vertices = contacts.feature_a[contacts.kind == nm.Kind.VERTEX_FACE]
     assert {0, 2} == set(vertices)
     assert contacts.names[0].tolist() == ["sheet", "floor"]
     assert made.geometry(contacts).points.shape[0] == len(contacts)

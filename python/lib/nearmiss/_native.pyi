@@ -1089,6 +1089,16 @@ class Detector:
         Raises InvalidArgumentError if the last update gave no body two ends.
         """
 
+    def first_contacts(self, first: FirstContact) -> Contacts:
+        """Return the contacts at the time of an earliest answer, as an answer to Continuous.
+
+        - `first`: FirstContact of this detector. Bodies must not have moved since.
+
+        They are the rows of Continuous whose `toi` it is. The step is tested again, up to that time; with a
+        `min_separation` all of it.
+        Raises InvalidArgumentError if nothing begins at that time where the bodies are now.
+        """
+
     def distance(self) -> NearestTriangles:
         """Return the nearest two bodies at t = 0, and their distance: the answer to Distance."""
 
