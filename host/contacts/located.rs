@@ -133,7 +133,7 @@ impl sealed::Rows for Rows {
             Rows::Near(pairs) => return pairs.inputs(),
             Rows::Pairs(pairs) => return pairs.inputs(),
             Rows::Earliest(_) => {
-                ("an earliest", "use that of its `first_contacts`; this answer has only a time")
+                ("an earliest", "use an answer of `first_contacts`; this one has only a time")
             }
             Rows::Distance(_) => {
                 ("a distance", "read `points` and `weights` of this answer's nearest triangles")

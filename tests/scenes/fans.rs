@@ -33,7 +33,7 @@ fn work(body: Body, query: Query) -> [u64; 2] {
 
 /// Tests and candidates of `n` faces and of 4 `n` grow by at most [`LINEAR`].
 fn grows_linearly(name: &str, shape: impl Fn(u32) -> Shape, query: Query) {
-    let [few, many] = [1_000, 4_000].map(|n| work(shape(n).body(), query));
+    let [few, many] = [1_500, 6_000].map(|n| work(shape(n).body(), query));
     for (few, many) in few.into_iter().zip(many) {
         let grown = many as f64 / few.max(1) as f64;
         assert!(many < 1_000 || grown <= LINEAR, "{name}, {query:?}: {few} to {many}, {grown} times");
