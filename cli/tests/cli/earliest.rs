@@ -1,4 +1,4 @@
-//! `--earliest` where there is little to say: nothing moves, or things meet already.
+//! `--earliest`: where nothing moves or things meet already, and the contacts at that time.
 
 use super::{Folder, ok, refused, summary};
 
@@ -58,4 +58,38 @@ fn what_does_not_move_or_meets_already_is_said() {
         let text = refused(2, &[&["detect", &floor, "--with", &through, "--assume-free"], more].concat());
         assert!(text.contains("--assume-free"), "{text}");
     }
+}
+
+/// The rows of `--first-contacts` are those of `--continuous` with the least time, in every kind of
+/// file.
+#[test]
+fn first_contacts_are_rows_of_all_contacts() {
+    let folder = Folder::new("first");
+    let scene = ["detect", "--scene", "soup-moving", "--triangles", "300"];
+    let rows = |name: &str, more: &[&str]| {
+        let file = folder.path(name);
+        ok(&[&scene[..], more, &["--out", &file]].concat());
+        folder.read(name)
+    };
+    let all = rows("all.csv", &["--continuous"]);
+    let column = all.lines().next().expect("a head").split(',').position(|name| name == "toi");
+    let toi = |row: &str| row.split(',').nth(column.expect("a time")).expect("a field").parse::<f64>();
+    let times = all.lines().skip(1).map(|row| toi(row).expect("a number"));
+    let least = times.min_by(f64::total_cmp).expect("some meet");
+    let wanted: Vec<&str> =
+        all.lines().take(1).chain(all.lines().skip(1).filter(|row| toi(row) == Ok(least))).collect();
+    let first = ["--earliest", "--first-contacts"];
+    let found = rows("first.csv", &first);
+    assert_eq!(found.lines().collect::<Vec<_>>(), wanted);
+    assert!(wanted.len() > 1 && all.lines().count() > 2 * wanted.len());
+    let placed = rows("placed.csv", &[&first[..], &["--geometry"]].concat());
+    assert_eq!(placed.lines().count(), wanted.len());
+    assert!(rows("first.vtp", &first).contains("<VTKFile"));
+    let told = summary(&[&scene[..], &first, &["--json"]].concat());
+    assert_eq!(told["contacts"], wanted.len() - 1);
+    for command in ["picture", "view"] {
+        let file = folder.path(if command == "view" { "first.html" } else { "first.png" });
+        ok(&[&[command], &scene[1..], &first, &["--out", &file]].concat());
+    }
+    assert!(refused(2, &[&scene[..], &["--first-contacts"]].concat()).contains("--earliest"));
 }
