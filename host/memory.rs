@@ -24,7 +24,6 @@ pub fn require(what: &str, bytes: u64) -> Result<(), Error> {
 /// Bytes that this program may still allocate. The least of the machine's free memory, its control
 /// group's limit and its own address space counts. `None` if the system reports none of these.
 pub fn free() -> Option<u64> {
-    let machine = read_to_string("/proc/meminfo").ok().and_then(|text| kilobytes(&text, "MemAvailable:"));
     let ways = [
         ["/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current", "/sys/fs/cgroup/memory.stat"],
         [
@@ -41,7 +40,23 @@ pub fn free() -> Option<u64> {
         let status = read_to_string("/proc/self/status").ok()?;
         of_process(&limits, &status)
     });
-    machine.into_iter().chain(group).chain(process).min()
+    machine().into_iter().chain(group).chain(process).min()
+}
+
+/// Free memory of the machine.
+#[cfg(not(windows))]
+fn machine() -> Option<u64> {
+    read_to_string("/proc/meminfo").ok().and_then(|text| kilobytes(&text, "MemAvailable:"))
+}
+
+/// Free memory of the machine. An allocation also needs room in the page file.
+#[cfg(windows)]
+fn machine() -> Option<u64> {
+    use windows_sys::Win32::System::SystemInformation::{GlobalMemoryStatusEx, MEMORYSTATUSEX};
+    let mut status = MEMORYSTATUSEX { dwLength: size_of::<MEMORYSTATUSEX>() as u32, ..Default::default() };
+    // SAFETY: the structure is ours and has its length.
+    let is_known = unsafe { GlobalMemoryStatusEx(&mut status) } != 0;
+    is_known.then_some(status.ullAvailPhys.min(status.ullAvailPageFile))
 }
 
 /// The number after `name` in a text of lines `name number kB`, in bytes.

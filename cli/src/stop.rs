@@ -1,4 +1,5 @@
 //! SIGINT and SIGTERM end the program at once: with status 130 or 143, one line, and no half file.
+//! On Windows Ctrl-C and Ctrl-Break do, and a console that closes, with status 130.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -110,9 +111,16 @@ pub fn listen() {
     }
 }
 
-/// Other systems end programs in their own way.
-#[cfg(not(unix))]
-pub fn listen() {}
+/// From here on, Ctrl-C ends the program as described above. If no thread can be started, it keeps
+/// its default effect.
+#[cfg(windows)]
+pub fn listen() {
+    let _ = ctrlc::set_handler(|| {
+        let _turn = give_up();
+        crate::output::say("ended by Ctrl-C: nothing is written");
+        std::process::exit(130)
+    });
+}
 
 #[cfg(test)]
 mod tests {

@@ -50,8 +50,13 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgMatches, FromArgMatches, Parser, Subcommand};
 use nearmiss::error::Error;
 use nearmiss::query::Named;
+#[cfg(not(windows))]
+use std::env::args_os;
 use std::io::Write;
 use std::process::ExitCode;
+// Shells of Windows leave patterns of files to the program.
+#[cfg(windows)]
+use wild::args_os;
 
 /// The heading of options that choose the query and its meshes.
 pub const QUERY: &str = "Query";
@@ -106,7 +111,7 @@ fn choice<T: Named>() -> impl TypedValueParser<Value = T> {
 /// [`Error::InvalidArgument`] for options that exclude each other or have no effect; [`Error::Output`] for
 /// help that cannot be printed.
 pub fn parse() -> Result<Result<Command, ExitCode>, Error> {
-    let parsed = command().try_get_matches().and_then(|all| {
+    let parsed = command().try_get_matches_from(args_os()).and_then(|all| {
         let cli = Cli::from_arg_matches(&all)?;
         Ok((cli.command, all))
     });
