@@ -125,6 +125,12 @@ impl Body {
         self.tolerance.0.unwrap_or_else(|| of_edges(std::slice::from_ref(self)))
     }
 
+    /// Sets the default tolerance, for a body that is part of a larger one.
+    #[doc(hidden)]
+    pub fn with_default_tolerance(self, tolerance: f64) -> Body {
+        Body { tolerance: Kept(Some(tolerance)), ..self }
+    }
+
     /// Computes the default tolerance, before the positions that it follows from are overwritten.
     pub(crate) fn keep_tolerance(&mut self) {
         self.tolerance = Kept(Some(self.default_tolerance()));

@@ -96,7 +96,8 @@ impl PoseStep {
     }
 
     /// Returns the step of a body with these poses, on a path that leads from one to the other.
-    pub(crate) fn along([start, end]: [Pose; 2], path: PosePath) -> PoseStep {
+    #[doc(hidden)]
+    pub fn along([start, end]: [Pose; 2], path: PosePath) -> PoseStep {
         PoseStep { start, end: End::Pose(end), path }
     }
 
