@@ -2,9 +2,8 @@
 # Makes all that a release is, and uploads nothing: `.ci/release.sh OUT`. It ends with the commands that would.
 #
 #   OUT/crates      the four packages of the library, as crates.io takes them
-#   OUT/wheels      Python's, for Linux on x86-64 and aarch64, glibc 2.17 and later, each with its bill of materials inside;
-#                   and for Windows on x86-64
-#   OUT/archives    the program with its manual pages and completions, and the C interface, for both machines and for Windows
+#   OUT/wheels      Python's, for Linux on x86-64 and aarch64, glibc 2.17 and later, each with its bill of materials inside
+#   OUT/archives    the program with its manual pages and completions, and the C interface, for both machines
 #   OUT/*.json      the bill of materials of each package (CycloneDX), OUT/SHA256SUMS of everything
 #
 # Rationale
@@ -14,7 +13,7 @@
 # - Wheels and archives hold the kernels' machine code beside the PTX (.ci/cubins.sh). Crates do not: crates.io takes 10 MB.
 #   Each kernel's code is judged before it is packed (.ci/lanes.py).
 # - Packed files have run: the wheels in empty environments with the READMEs' lines, the C examples, the program, whose answers are the same
-#   bytes for both machines. aarch64 runs under QEMU (.ci/aarch64.sh), Windows under Wine (.ci/windows.sh).
+#   bytes for both machines. aarch64 runs under QEMU (.ci/aarch64.sh).
 # - The public interface is compared with that of the newest tag `v*` by cargo-semver-checks; where there is no tag there is nothing to compare.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -137,12 +136,6 @@ for target in $intel $arm; do
         tar -C "$work" --owner=0 --group=0 --sort=name -czf "$out/archives/$name-$version-$machine-linux.tar.gz" "$name-$version-$machine-linux"
     done
 done
-
-echo "=== Windows"
-NEARMISS=$nearmiss .ci/windows.sh "$work/windows" release
-twine check --strict "$work"/windows/*.whl
-mv "$work"/windows/*.whl "$out/wheels/"
-mv "$work"/windows/*.zip "$out/archives/"
 
 echo "=== bills of materials"
 tool cargo-cyclonedx
