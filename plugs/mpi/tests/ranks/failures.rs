@@ -120,7 +120,8 @@ pub fn refusals(ranks: &Ranks) -> Result<(), RankError> {
     let body = &case.scene.bodies()[0];
     // A triangle on two ranks, and one on none.
     let twice = ranks.run(|| {
-        Ok(if is_last { vec![Piece::of(body, &all[3..4])?] } else { vec![Piece::of(body, &all)?] })
+        let owned = if is_last { &all[3..4] } else { &all[..if ranks.rank() == 0 { all.len() } else { 0 }] };
+        Ok(vec![Piece::of(body, owned)?])
     })?;
     agrees_of_setup(ranks, twice, &["triangle 3 of sheet is owned by ranks 0 and"])?;
     let none = ranks
