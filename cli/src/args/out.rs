@@ -30,7 +30,7 @@ pub struct OutArgs {
     ///
     /// For rows of vertex-face and edge-edge pairs, in .csv and .json. Triangles at t = 0 get their kind
     /// (crossing, point, segment, overlap), both ends of their common segment, and the error of these.
-    #[arg(long, requires = "out", conflicts_with_all = ["file_faces", "earliest", "distance", "body_pairs", "body_distances"])]
+    #[arg(long, requires = "out", conflicts_with_all = ["file_faces", "distance", "body_pairs", "body_distances"])]
     pub geometry: bool,
     /// Name faces of the file in --out, not triangles; they count from 0
     #[arg(long, requires = "out", conflicts_with_all = ["scene", "earliest"], hide_short_help = true)]
@@ -41,7 +41,7 @@ pub struct OutArgs {
     /// are orange if all their contacts are undecided, and grey otherwise. The file may be
     /// compressed (.ply.gz). A sequence has a file for each frame: `#` in the name is its number, as in
     /// `marked.####.ply`.
-    #[arg(long, value_name = "FILE", conflicts_with = "earliest")]
+    #[arg(long, value_name = "FILE")]
     pub out_mesh: Option<PathBuf>,
     /// Colour triangles by their number of contacts
     ///

@@ -83,10 +83,11 @@ impl LookArgs {
 }
 
 /// Options of `detect` that a picture and a page refuse.
-pub const IDLE: [&str; 11] = [
+pub const IDLE: [&str; 12] = [
     "repeat",
     "only",
     "earliest",
+    "first_contacts",
     "json",
     "verbose",
     "geometry",

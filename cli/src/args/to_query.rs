@@ -113,8 +113,8 @@ impl DetectArgs {
                 format!("a .vtp and --geometry need points, and a {kind} query has none"),
                 "use --discrete, or write .csv",
             ),
-            QueryKind::Earliest if vtp || self.out.geometry => refused(
-                format!("a .vtp and --geometry need points, and a {kind} query has none"),
+            QueryKind::Earliest if vtp || self.out.geometry || self.out.out_mesh.is_some() => refused(
+                format!("a .vtp, --geometry and --out-mesh need contacts, and an {kind} query has none"),
                 "add --first-contacts, or use --continuous or --near",
             ),
             QueryKind::Discrete if !is_certain && (vtp || self.out.geometry) => refused(

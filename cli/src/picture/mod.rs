@@ -8,7 +8,7 @@ mod shade;
 
 use crate::args::PictureArgs;
 use crate::args::picture::{Around, Fit, LookArgs, check};
-use crate::detect::{Question, keeps, promise, question, series, shown};
+use crate::detect::{Question, keeps, promise, question, series};
 use crate::output::{Target, print, say};
 use crate::paint::{self, GREY, ORANGE, Paint, Painted, RED};
 use crate::progress::during;
@@ -67,7 +67,6 @@ pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
     let device = args.detect.machine.open()?;
     let mut detector = during("building", || OneQuery::new(device, scene, query))?;
     let found = during("detecting", || detector.detect())?;
-    let found = shown(&args.detect, &mut detector, found)?;
     draw(args, (&mut detector, &found), None, (target, &out.display().to_string()))?;
     Ok(ExitCode::SUCCESS)
 }
@@ -101,7 +100,6 @@ fn film(
             continue;
         }
         let found = walk.at(step)?;
-        let found = shown(&args.detect, &mut walk.detector, found)?;
         let name = named(out, moment.number()).unwrap_or_default().display().to_string();
         draw(args, (&mut walk.detector, &found), camera.as_ref(), (target, &name))?;
     }

@@ -7,7 +7,7 @@ mod page;
 use crate::args::ViewArgs;
 use crate::args::view::check;
 use crate::detect::text::{found as line, remarks};
-use crate::detect::{Question, keeps, promise, question, shown};
+use crate::detect::{Question, keeps, promise, question};
 use crate::output::{Stop, Target, print, say};
 use crate::paint::{self, GREY, Paint};
 use crate::picture::{body_colours, bounds};
@@ -60,7 +60,6 @@ pub fn view(args: &ViewArgs) -> Result<ExitCode, Error> {
                 let device = args.detect.machine.open()?;
                 let mut detector = during("building", || OneQuery::new(device, scene, query))?;
                 let found = during("detecting", || detector.detect())?;
-                let found = shown(&args.detect, &mut detector, found)?;
                 let moment = Moment { step: 0, frame: None, file: None };
                 view.add(moment, &mut detector, &found)?;
                 steps = 1;
@@ -77,7 +76,6 @@ pub fn view(args: &ViewArgs) -> Result<ExitCode, Error> {
                         continue;
                     }
                     let found = walk.at(step)?;
-                    let found = shown(&args.detect, &mut walk.detector, found)?;
                     view.add(moment, &mut walk.detector, &found)?;
                 }
             }
@@ -114,14 +112,13 @@ fn about(
     let named = sequence.and_then(|all| all.names.clone()).filter(|_| args.detect.meshes.len() == 1);
     let first = args.detect.meshes.first().map(|file| crate::stem(file));
     let subject = args.detect.query.scene.clone().or(first).unwrap_or_default();
-    let listed = if args.detect.query.first_contacts { Query::continuous() } else { *query };
     Ok(About {
         title: format!("{subject}: {} query by {}", query.kind(), query.solver()),
         middle: [0, 1, 2].map(|k| low[k] / 2.0 + high[k] / 2.0),
         side: if longest > 0.0 { longest } else { 1.0 },
         at_rest: query.kind().is_at_rest(),
         direction: [args.direction.view, args.direction.up],
-        columns: Columns::of(&listed, bodies.len()),
+        columns: Columns::of(query, bodies.len()),
         names: named.unwrap_or_else(|| names(bodies)),
     })
 }

@@ -87,9 +87,11 @@ fn first_contacts_are_rows_of_all_contacts() {
     assert!(rows("first.vtp", &first).contains("<VTKFile"));
     let told = summary(&[&scene[..], &first, &["--json"]].concat());
     assert_eq!(told["contacts"], wanted.len() - 1);
-    for command in ["picture", "view"] {
-        let file = folder.path(if command == "view" { "first.html" } else { "first.png" });
-        ok(&[&[command], &scene[1..], &first, &["--out", &file]].concat());
+    let marked = folder.path("marked.ply");
+    ok(&[&scene[..], &first, &["--out-mesh", &marked]].concat());
+    for needs in [&["--out-mesh", &marked][..], &["--geometry", "--out", &marked.replace(".ply", ".csv")]] {
+        let text = refused(2, &[&scene[..], &["--earliest"], needs].concat());
+        assert!(text.contains("add --first-contacts"), "{text}");
     }
     assert!(refused(2, &[&scene[..], &["--first-contacts"]].concat()).contains("--earliest"));
 }
