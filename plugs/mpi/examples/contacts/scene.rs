@@ -17,6 +17,20 @@ enum Track {
     Poses(Poses),
 }
 
+impl Track {
+    /// Motion for a step or frame; none of a body at rest.
+    fn motion(&self, at: usize, at_rest: bool) -> Option<Motion<'_>> {
+        match self {
+            Track::Positions(all) if all.len() < 2 => None,
+            Track::Poses(all) if all.frames.len() < 2 => None,
+            Track::Positions(all) if at_rest => Some(Motion::positions(&all[at])),
+            Track::Positions(all) => Some(Motion::step(&all[at], &all[at + 1])),
+            Track::Poses(all) if at_rest => Some(Motion::pose(all.frames[at])),
+            Track::Poses(all) => Some(Motion::PoseStep(all.steps[at])),
+        }
+    }
+}
+
 /// A scene and its frames.
 pub struct Film {
     /// The bodies at the first frame.
@@ -51,15 +65,7 @@ impl Film {
 
     /// Motions of bodies for a step or frame; none of bodies at rest.
     pub fn motions(&self, at: usize, at_rest: bool) -> Vec<(usize, Motion<'_>)> {
-        let motion = |track| match track {
-            &Track::Positions(ref all) if all.len() < 2 => None,
-            &Track::Poses(ref all) if all.frames.len() < 2 => None,
-            Track::Positions(all) if at_rest => Some(Motion::positions(&all[at])),
-            Track::Positions(all) => Some(Motion::step(&all[at], &all[at + 1])),
-            Track::Poses(all) if at_rest => Some(Motion::pose(all.frames[at])),
-            Track::Poses(all) => Some(Motion::PoseStep(all.steps[at])),
-        };
-        let motions = self.tracks.iter().map(motion).enumerate();
+        let motions = self.tracks.iter().map(|track| track.motion(at, at_rest)).enumerate();
         motions.filter_map(|(body, motion)| motion.map(|motion| (body, motion))).collect()
     }
 }

@@ -16,15 +16,14 @@ fn agrees<T>(
     parts: &[&str],
 ) -> Result<(), RankError> {
     let error = found.err();
-    let same = ranks.run(|| {
+    ranks.run(|| {
         let error = error.as_ref().expect("an error");
         let text = error.to_string();
         assert_eq!(error.rank, rank, "{text}");
         assert!(parts.iter().all(|part| text.contains(part)), "{text}");
         assert!(text.starts_with(&format!("rank {rank}: ")), "{text}");
         Ok(())
-    });
-    same
+    })
 }
 
 fn end(ranks: &Ranks) -> Result<(), RankError> {
