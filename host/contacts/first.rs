@@ -43,8 +43,7 @@ impl First for Rows {
 
 impl From<Answer<RowList<Contact>>> for Contacts {
     fn from(answer: Answer<RowList<Contact>>) -> Contacts {
-        let Answer { rows, query, starts_crossing, undecided, stats, caveats, is_free } = answer;
-        Answer { rows: Rows::Contacts(rows), query, starts_crossing, undecided, stats, caveats, is_free }
+        answer.with_rows(Rows::Contacts)
     }
 }
 

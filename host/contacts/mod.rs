@@ -256,14 +256,19 @@ impl<T> Answer<T> {
     pub fn is_free(&self) -> bool {
         self.is_free
     }
+
+    /// Converts the rows; all else stays.
+    pub(crate) fn with_rows<U>(self, rows: impl FnOnce(T) -> U) -> Answer<U> {
+        let Answer { rows: own, query, starts_crossing, undecided, stats, caveats, is_free } = self;
+        Answer { rows: rows(own), query, starts_crossing, undecided, stats, caveats, is_free }
+    }
 }
 
 impl Contacts {
     /// Converts the rows to the type of the query.
     pub(crate) fn typed<Q: TypedQuery>(self) -> Answer<Q::Rows> {
-        let Answer { rows, query, starts_crossing, undecided, stats, caveats, is_free } = self;
-        let rows = Q::rows(rows, undecided > 0);
-        Answer { rows, query, starts_crossing, undecided, stats, caveats, is_free }
+        let is_undecided = self.undecided > 0;
+        self.with_rows(|rows| Q::rows(rows, is_undecided))
     }
 
     /// Makes an answer with these rows.
