@@ -27,7 +27,7 @@ pub use pose::Pose;
 pub use pose_step::{PosePath, PoseStep};
 pub use poses::Poses;
 #[doc(hidden)]
-pub use sides::{mean_side, of_edges};
+pub use sides::{mean_side, of_edges, of_mean_side};
 pub use thickness::Thickness;
 
 use std::fmt;
@@ -104,7 +104,7 @@ impl CollisionFilter {
     }
 
     /// Whether environments and groups allow two different bodies to meet.
-    pub(crate) fn allows(&self, other: &CollisionFilter) -> bool {
+    pub fn allows(&self, other: &CollisionFilter) -> bool {
         let is_everywhere = self.environment.is_none() || other.environment.is_none();
         let is_together = is_everywhere || self.environment == other.environment;
         is_together && self.group & other.mask != 0 && other.group & self.mask != 0

@@ -7,7 +7,12 @@ use crate::query::Certified;
 /// [`Certified::TOLERANCE`] of the mean side of the triangles at t = 0, rounded down to a power of
 /// two. 0 if no side has a length. Cost: a square root for each side, on the host.
 pub fn of_edges(bodies: &[Body]) -> f64 {
-    power_below(Certified::TOLERANCE * mean_side(bodies))
+    of_mean_side(mean_side(bodies))
+}
+
+/// The same of a mean side that is known.
+pub fn of_mean_side(mean: f64) -> f64 {
+    power_below(Certified::TOLERANCE * mean)
 }
 
 /// Mean side of the triangles at t = 0, over each triangle's own three, and of edges of no face; 0 if

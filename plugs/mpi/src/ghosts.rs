@@ -5,7 +5,7 @@
 
 use crate::bytes::{Reader, Writer};
 use crate::chunks::Chunk;
-use crate::numbers::Features;
+use crate::numbers::{self, Features};
 use crate::piece::Piece;
 use crate::place::Place;
 use nearmiss::scene::BodyKind;
@@ -86,10 +86,8 @@ fn write(
     message: &mut Writer,
 ) -> Vec<u32> {
     let corners = || faces.iter().map(|&face| piece.body.faces()[face as usize]);
-    let mut vertices: Vec<u32> = corners().flatten().collect();
-    vertices.sort_unstable();
-    vertices.dedup();
-    let place = |v: u32| vertices.partition_point(|&own| own < v) as u32;
+    let vertices = numbers::ascending(corners().flatten());
+    let place = |v: u32| numbers::place(&vertices, v);
     message.put(&[[body as u32, faces.len() as u32]]);
     message.put(&faces.iter().map(|&face| piece.faces[face as usize]).collect::<Vec<u32>>());
     message.put(&corners().map(|corners| corners.map(place)).collect::<Vec<_>>());
@@ -128,12 +126,8 @@ pub(crate) fn may_meet(pieces: &[Piece], left_out: &[[usize; 2]], a: usize, b: u
     if a == b {
         return x.self_collides();
     }
-    let (f, g) = (x.filter(), y.filter());
-    let is_everywhere = f.environment.is_none() || g.environment.is_none();
     (x.kind() != BodyKind::Fixed || y.kind() != BodyKind::Fixed)
-        && (is_everywhere || f.environment == g.environment)
-        && f.group & g.mask != 0
-        && g.group & f.mask != 0
+        && x.filter().allows(y.filter())
         && left_out.binary_search(&[a.min(b), a.max(b)]).is_err()
 }
 

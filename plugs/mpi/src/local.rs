@@ -5,7 +5,7 @@
 
 use crate::error::refused;
 use crate::ghosts::Ghosts;
-use crate::numbers::Features;
+use crate::numbers::{self, Features};
 use crate::piece::Piece;
 use crate::place::Place;
 use nearmiss::mesh::{NO_EDGE, Positions, Topology};
@@ -89,10 +89,8 @@ fn sources<'a>(
 
 impl LocalBody {
     fn new(sources: &[Source]) -> LocalBody {
-        let mut vertices: Vec<u32> = sources.iter().flat_map(|source| source.vertices).copied().collect();
-        vertices.sort_unstable();
-        vertices.dedup();
-        let local = |v: &u32| vertices.partition_point(|own| own < v) as u32;
+        let vertices = numbers::ascending(sources.iter().flat_map(|source| source.vertices).copied());
+        let local = |&v: &u32| numbers::place(&vertices, v);
         let to: Vec<Vec<u32>> =
             sources.iter().map(|source| source.vertices.iter().map(local).collect()).collect();
         let mut order: Vec<(u32, usize, usize)> = Vec::new();

@@ -45,6 +45,19 @@ impl Requests {
     }
 }
 
+/// Returns the numbers in ascending order, each once.
+pub(crate) fn ascending(numbers: impl Iterator<Item = u32>) -> Vec<u32> {
+    let mut all: Vec<u32> = numbers.collect();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
+
+/// Returns the place of a number among ascending ones.
+pub(crate) fn place(ascending: &[u32], number: u32) -> u32 {
+    ascending.partition_point(|&own| own < number) as u32
+}
+
 /// First and last triangle of this rank for each local vertex or edge.
 fn firsts(lists: &[[u32; 3]], count: usize) -> Vec<u32> {
     let mut first = vec![u32::MAX; count];

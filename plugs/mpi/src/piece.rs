@@ -1,6 +1,8 @@
 //! The part of a body that a rank owns.
 
 use crate::error::refused;
+use crate::numbers;
+use crate::place::chosen;
 use nearmiss::mesh::{Positions, Problem};
 use nearmiss::scene::{BodyKind, Motion};
 use nearmiss::{Body, Error, Mesh};
@@ -51,10 +53,7 @@ impl Piece {
                 return Err(refused(what, "sort the piece by its numbers in the whole body"));
             }
         }
-        if !(body.edges().is_empty() && body.points().is_empty()) {
-            let what = format!("{name} has edges or points of its own, which ranks do not share");
-            return Err(refused(what, "use one machine, or triangles alone"));
-        }
+        of_triangles(&body)?;
         if body.thickness().same().is_none() {
             let what = format!("the thickness of {name} differs between vertices");
             return Err(refused(what, "use one machine, or one radius for the body"));
@@ -71,27 +70,16 @@ impl Piece {
     /// # Errors
     /// As of [`Piece::new`], and for a triangle that the body does not have.
     pub fn of(body: &Body, faces: &[u32]) -> Result<Piece, Error> {
-        let mut faces = faces.to_vec();
-        faces.sort_unstable();
-        faces.dedup();
+        let faces = numbers::ascending(faces.iter().copied());
         if let Some(face) = faces.last().filter(|&&face| face as usize >= body.face_count()) {
             let what = format!("{} has no triangle {face}: it has {}", body.name(), body.face_count());
             return Err(refused(what, "give numbers of its triangles"));
         }
-        if !(body.edges().is_empty() && body.points().is_empty()) {
-            let what = format!("{} has edges or points of its own, which ranks do not share", body.name());
-            return Err(refused(what, "use one machine, or triangles alone"));
-        }
-        let corners = || faces.iter().flat_map(|&face| body.faces()[face as usize]);
-        let mut vertices: Vec<u32> = corners().collect();
-        vertices.sort_unstable();
-        vertices.dedup();
-        let local = |v: u32| vertices.partition_point(|&own| own < v) as u32;
-        let triangles = faces.iter().map(|&face| body.faces()[face as usize].map(local)).collect();
-        let part = |positions: &Positions| match positions {
-            Positions::F32(all) => Positions::F32(vertices.iter().map(|&v| all[v as usize]).collect()),
-            Positions::F64(all) => Positions::F64(vertices.iter().map(|&v| all[v as usize]).collect()),
-        };
+        of_triangles(body)?;
+        let corners = faces.iter().map(|&face| body.faces()[face as usize]);
+        let vertices = numbers::ascending(corners.clone().flatten());
+        let triangles = corners.map(|corners| corners.map(|v| numbers::place(&vertices, v))).collect();
+        let part = |positions: &Positions| chosen(positions.into(), &vertices);
         let mesh = Mesh::new(body.name(), part(body.positions_t0()), triangles)?;
         let piece = match body.kind() {
             BodyKind::Fixed => Body::fixed(mesh),
@@ -144,4 +132,13 @@ impl Piece {
         };
         Error::Input { file, problem }
     }
+}
+
+/// Refuses edges and points of a body's own.
+fn of_triangles(body: &Body) -> Result<(), Error> {
+    if body.edges().is_empty() && body.points().is_empty() {
+        return Ok(());
+    }
+    let what = format!("{} has edges or points of its own, which ranks do not share", body.name());
+    Err(refused(what, "use one machine, or triangles alone"))
 }

@@ -2,7 +2,7 @@
 
 use crate::bytes::{Reader, Writer};
 use nearmiss::Body;
-use nearmiss::mesh::Positions;
+use nearmiss::mesh::{Points, Positions};
 use nearmiss::scene::{BodyKind, Pose, PosePath, PoseStep};
 
 /// Place of some vertices of a body.
@@ -20,11 +20,8 @@ type Packed = [f64; 22];
 impl Place {
     /// Place of these vertices of a body.
     pub fn of(body: &Body, vertices: &[u32]) -> Place {
-        let part = |positions: &Positions| match positions {
-            Positions::F32(all) => Positions::F32(vertices.iter().map(|&v| all[v as usize]).collect()),
-            Positions::F64(all) => Positions::F64(vertices.iter().map(|&v| all[v as usize]).collect()),
-        };
-        let ends = std::iter::once(body.positions_t0()).chain(body.positions_t1()).map(part).collect();
+        let ends = std::iter::once(body.positions_t0()).chain(body.positions_t1());
+        let ends = ends.map(|positions| chosen(positions.into(), vertices)).collect();
         Place { ends, step: (body.kind() == BodyKind::Rigid).then(|| body.pose_step()) }
     }
 
@@ -53,6 +50,14 @@ impl Place {
         if !ends.is_empty() {
             self.ends = ends;
         }
+    }
+}
+
+/// Returns the positions of these vertices.
+pub(crate) fn chosen(positions: Points, vertices: &[u32]) -> Positions {
+    match positions {
+        Points::F32(all) => Positions::F32(vertices.iter().map(|&v| all[v as usize]).collect()),
+        Points::F64(all) => Positions::F64(vertices.iter().map(|&v| all[v as usize]).collect()),
     }
 }
 

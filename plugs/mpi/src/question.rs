@@ -8,16 +8,13 @@ use crate::setup;
 use nearmiss::research::{QueryExt, Solver};
 use nearmiss::scene::BodyKind;
 use nearmiss::{Error, Query};
-use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// Checks that all ranks have the same query.
 ///
 /// # Errors
 /// From the first rank whose query is not that of rank 0.
 pub(crate) fn same(ranks: &Ranks, query: &Query) -> Result<(), RankError> {
-    let mut hasher = DefaultHasher::new();
-    format!("{query:?}").hash(&mut hasher);
-    setup::same(ranks, hasher.finish(), || {
+    setup::same(ranks, setup::hash(&format!("{query:?}")), || {
         refused(format!("a {} query that differs from that of rank 0", query.kind()), "query all ranks alike")
     })
 }

@@ -2,11 +2,11 @@
 
 use crate::error::{RankError, refused};
 use crate::piece::Piece;
+use crate::place::chosen;
 use crate::ranks::{Purpose, Ranks};
 use mpi::collective::SystemOperation;
 use nearmiss::mesh::{Points, Positions};
-use nearmiss::research::Certified;
-use nearmiss::scene::{BodyKind, Motion, mean_side};
+use nearmiss::scene::{BodyKind, Motion, mean_side, of_mean_side};
 use nearmiss::{Body, Error, Mesh};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -43,7 +43,8 @@ pub(crate) fn agree(ranks: &Ranks, pieces: &[Piece], left_out: &[[usize; 2]]) ->
     })
 }
 
-fn hash(of: &impl Hash) -> u64 {
+/// Returns a hash by which ranks compare what they were given.
+pub(crate) fn hash(of: &impl Hash) -> u64 {
     let mut hasher = DefaultHasher::new();
     of.hash(&mut hasher);
     hasher.finish()
@@ -84,8 +85,7 @@ pub(crate) fn tolerances(ranks: &Ranks, pieces: &[Piece]) -> Result<Vec<f64>, Ra
         }
         let mean =
             parts.iter().map(|part| part[0]).sum::<f64>() / parts.iter().map(|part| part[1]).sum::<f64>();
-        let [least, most] =
-            [1.0 - SUMMED, 1.0 + SUMMED].map(|by| power_below(Certified::TOLERANCE * mean * by));
+        let [least, most] = [1.0 - SUMMED, 1.0 + SUMMED].map(|by| of_mean_side(mean * by));
         if least == most {
             return Ok(least);
         }
@@ -97,11 +97,6 @@ pub(crate) fn tolerances(ranks: &Ranks, pieces: &[Piece]) -> Result<Vec<f64>, Ra
 
 /// Relative error of a mean of all sides, at most: 2^33 terms, rounded once each.
 const SUMMED: f64 = 1.0 / (1 << 20) as f64;
-
-/// Largest power of two that is at most `x`; 0 if `x` is no positive normal number.
-fn power_below(x: f64) -> f64 {
-    if x.is_normal() && x > 0.0 { f64::from_bits(x.to_bits() >> 52 << 52) } else { 0.0 }
-}
 
 /// Checks motions of pieces.
 ///
@@ -162,11 +157,7 @@ pub(crate) fn part_of<'a>(
             let what = format!("{name} has {count} vertices, and {} positions were given", points.len());
             return Err(refused(what, "give one for each vertex of the whole body"));
         }
-        let vertices = piece.vertices.iter().map(|&v| v as usize);
-        Ok(match points {
-            Points::F32(all) => Positions::F32(vertices.map(|v| all[v]).collect()),
-            Points::F64(all) => Positions::F64(vertices.map(|v| all[v]).collect()),
-        })
+        Ok(chosen(*points, &piece.vertices))
     };
     let ends: &[Points] = match motion {
         Motion::Positions(at) => std::slice::from_ref(at),
