@@ -91,8 +91,7 @@ impl Ranks {
     /// # Errors
     /// The error of the first rank that failed, on every rank.
     pub fn agree<T>(&self, own: Result<T, Error>) -> Result<T, RankError> {
-        let own = own.map_err(|error| (error.to_string(), error.exit_code()));
-        self.agreed(own)
+        self.agreed(own.map_err(told))
     }
 
     /// Runs work of this rank and agrees about it: an error and a panic end the call on every rank.
@@ -101,7 +100,7 @@ impl Ranks {
     /// As of [`Ranks::agree`].
     pub fn run<T>(&self, work: impl FnOnce() -> Result<T, Error>) -> Result<T, RankError> {
         let own = match catch_unwind(AssertUnwindSafe(work)) {
-            Ok(done) => done.map_err(|error| (error.to_string(), error.exit_code())),
+            Ok(done) => done.map_err(told),
             Err(panic) => {
                 let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
                 let text = text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();
@@ -190,6 +189,11 @@ impl Ranks {
         sent[why as usize] += bytes as u64;
         self.sent.set(sent);
     }
+}
+
+/// The text of an error, and its exit status.
+fn told(error: Error) -> (String, u8) {
+    (error.to_string(), error.exit_code())
 }
 
 /// Exit status of a program after a panic, as of [`Error::Bug`].

@@ -113,18 +113,25 @@ pub(crate) struct PackedFeatures {
     choice: u32,
 }
 
+/// Names, numbers and order of a row of two features.
+macro_rules! of_features {
+    () => {
+        fn names<'a>(&self, bodies: &'a [LocalBody]) -> [&'a Names; 2] {
+            [0, 1].map(|k| of_kind(&bodies[self.bodies[k].index()], self.kind, k))
+        }
+        fn features(&mut self) -> [&mut u32; 2] {
+            [&mut self.feature_a, &mut self.feature_b]
+        }
+        fn key(&self) -> (u8, [(BodyId, u32); 2]) {
+            (self.kind as u8, [(self.bodies[0], self.feature_a), (self.bodies[1], self.feature_b)])
+        }
+    };
+}
+
 impl Row for Contact {
     type Packed = PackedFeatures;
 
-    fn names<'a>(&self, bodies: &'a [LocalBody]) -> [&'a Names; 2] {
-        [0, 1].map(|k| of_kind(&bodies[self.bodies[k].index()], self.kind, k))
-    }
-    fn features(&mut self) -> [&mut u32; 2] {
-        [&mut self.feature_a, &mut self.feature_b]
-    }
-    fn key(&self) -> (u8, [(BodyId, u32); 2]) {
-        (self.kind as u8, [(self.bodies[0], self.feature_a), (self.bodies[1], self.feature_b)])
-    }
+    of_features!();
     fn pack(&self) -> PackedFeatures {
         PackedFeatures {
             bodies: numbers(self.bodies),
@@ -151,15 +158,7 @@ impl Row for Contact {
 impl Row for NearPair {
     type Packed = PackedFeatures;
 
-    fn names<'a>(&self, bodies: &'a [LocalBody]) -> [&'a Names; 2] {
-        [0, 1].map(|k| of_kind(&bodies[self.bodies[k].index()], self.kind, k))
-    }
-    fn features(&mut self) -> [&mut u32; 2] {
-        [&mut self.feature_a, &mut self.feature_b]
-    }
-    fn key(&self) -> (u8, [(BodyId, u32); 2]) {
-        (self.kind as u8, [(self.bodies[0], self.feature_a), (self.bodies[1], self.feature_b)])
-    }
+    of_features!();
     fn pack(&self) -> PackedFeatures {
         PackedFeatures {
             bodies: numbers(self.bodies),
