@@ -39,19 +39,19 @@ pub struct Name {
 }
 
 impl Name {
-    /// Of two triangles.
+    /// The name of two triangles.
     #[inline(always)]
     pub fn of_triangles(features: [u32; 2]) -> Name {
         Name { kind: 0, of: [Feature::TRIANGLE; 2], features }
     }
 
-    /// Of two edges.
+    /// The name of two edges.
     #[inline(always)]
     pub fn of_edges(features: [u32; 2]) -> Name {
         Name { kind: code::EDGE_EDGE, of: [Feature::EDGE; 2], features }
     }
 
-    /// Of a vertex and a triangle that stands for this element.
+    /// The name of a vertex and a triangle that stands for this element.
     #[inline(always)]
     pub fn of_element(vertex: u32, Element { kind, number }: Element) -> Name {
         let kind = kind as u8;

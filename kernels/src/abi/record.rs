@@ -81,7 +81,7 @@ pub struct Element {
 const _: () = assert!(size_of::<Element>() == 8);
 
 impl Element {
-    /// Of a triangle that is a face.
+    /// The element of a triangle that is a face.
     #[inline(always)]
     pub fn face(triangle: u32) -> Element {
         Element { kind: super::rows::code::VERTEX_FACE as u32, number: triangle }
