@@ -3,6 +3,7 @@
 use indicatif::{ProgressBar, ProgressDrawTarget};
 use std::borrow::Cow;
 use std::io::IsTerminal;
+use std::thread;
 use std::time::Duration;
 
 /// Runs `work`; when it takes over a second and standard error is a terminal, says what it does.
@@ -14,7 +15,8 @@ pub fn during<T>(what: impl Into<Cow<'static, str>>, work: impl FnOnce() -> T) -
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
     let shown = bar.clone();
     let (done, waits) = std::sync::mpsc::channel::<()>();
-    let watcher = std::thread::spawn(move || {
+    // Without a thread for it, nothing is shown.
+    let watcher = thread::Builder::new().name("progress".into()).spawn(move || {
         if waits
             .recv_timeout(Duration::from_secs(1))
             .is_err_and(|e| e == std::sync::mpsc::RecvTimeoutError::Timeout)
@@ -27,7 +29,7 @@ pub fn during<T>(what: impl Into<Cow<'static, str>>, work: impl FnOnce() -> T) -
     let result = work();
     drop(done);
     // The watcher only draws: that it failed changes nothing.
-    let _ = watcher.join();
+    let _ = watcher.map(thread::JoinHandle::join);
     bar.finish_and_clear();
     result
 }

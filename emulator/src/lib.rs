@@ -15,20 +15,20 @@ mod prefetch;
 mod rows;
 mod sanitizer;
 mod shadow;
+mod threads;
 mod turns;
 
 pub use interrupt::{Interrupt, Looks};
 pub use order::Order;
 pub use sanitizer::{Fault, Place, Sanitizer};
+pub use threads::start_threads;
 
 use block::Emulated;
 use engine::Looking;
 use nearmiss_kernels::entry::Entry;
 use observer::BlockObserver;
 use rayon::prelude::*;
-use std::error::Error as _;
 use std::ptr::NonNull;
-use std::sync::OnceLock;
 use turns::TurnScheduler;
 
 /// Failures and findings of an emulator.
@@ -78,32 +78,6 @@ pub enum Mode {
     Sanitizer(Order),
 }
 
-/// Checks that this is the process that first started threads. A process that was forked since has
-/// none of them, and would wait for ever.
-fn has_threads() -> Result<(), Error> {
-    static STARTED_BY: OnceLock<u32> = OnceLock::new();
-    let own = std::process::id();
-    if *STARTED_BY.get_or_init(|| own) == own { Ok(()) } else { Err(Error::Forked) }
-}
-
-/// Starts the program's shared threads, if they do not run yet. If they failed to start later, at
-/// their first use, that would panic.
-///
-/// # Errors
-/// [`Error::Threads`], the same each time: they are started once. [`Error::Forked`] in a process
-/// that was forked since.
-pub fn start_threads() -> Result<(), Error> {
-    has_threads()?;
-    static STARTED: OnceLock<Result<(), String>> = OnceLock::new();
-    let started = STARTED.get_or_init(|| match rayon::ThreadPoolBuilder::new().build_global() {
-        // An error without a source means that they run already.
-        Err(error) if error.source().is_some() => Err(error.to_string()),
-        _ => Ok(()),
-    });
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    started.clone().map_err(|text| Error::Threads { threads, text })
-}
-
 /// Lanes of a block of an engine at most, unless a kernel needs more. A cost; no answer depends on it.
 const FEW_LANES: u32 = 64;
 
@@ -121,17 +95,7 @@ impl Emulator {
     /// [`Error::Threads`] if the threads cannot be started; [`Error::Forked`] in a process that was
     /// forked after some were.
     pub fn new(mode: Mode, threads: Option<usize>) -> Result<Self, Error> {
-        has_threads()?;
-        let pool = match threads {
-            None => {
-                start_threads()?;
-                None
-            }
-            Some(threads) => {
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-                Some(pool.map_err(|e| Error::Threads { threads, text: e.to_string() })?)
-            }
-        };
+        let pool = threads::pool(threads)?;
         let sanitizer = match mode {
             Mode::Engine => None,
             Mode::Sanitizer(order) => Some(Sanitizer::new(order, None)),

@@ -141,8 +141,8 @@ pub fn folder(path: &Path) -> Result<(), Error> {
 /// # Errors
 /// [`Error::InvalidArgument`], naming the option and the file.
 pub fn keeps<'a>(option: &str, to: &Path, read: impl IntoIterator<Item = &'a Path>) -> Result<(), Error> {
-    let Ok(real) = to.canonicalize() else { return Ok(()) };
-    match read.into_iter().find(|from| from.canonicalize().is_ok_and(|from| from == real)) {
+    let Ok(real) = place::real(to) else { return Ok(()) };
+    match read.into_iter().find(|from| place::real(from).is_ok_and(|from| from == real)) {
         None => Ok(()),
         Some(from) => Err(Error::InvalidArgument {
             what: format!("{option} would overwrite {}, which is read", from.display()),

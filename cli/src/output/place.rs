@@ -3,7 +3,7 @@
 use crate::stop::{self, Writing};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Seek, Write};
-use std::path::{Path, PathBuf, is_separator};
+use std::path::{Component, Path, PathBuf, is_separator};
 use tempfile::{Builder, NamedTempFile, PersistError};
 
 /// How a file is written.
@@ -36,7 +36,7 @@ pub fn way(path: &Path) -> io::Result<Way> {
     let file = OpenOptions::new().write(true).open(path)?;
     if kind.is_file() {
         // A link stays one: the file that it names is replaced.
-        let real = fs::canonicalize(path)?;
+        let real = real(path)?;
         match probe(folder_of(&real)) {
             Ok(()) => return Ok(Way::Beside(real)),
             Err(e) if takes_no_files(&e) => {}
@@ -44,6 +44,19 @@ pub fn way(path: &Path) -> io::Result<Way> {
         }
     }
     Ok(Way::Open(file))
+}
+
+/// The name of the file that a path leads to: the same for all paths to it.
+///
+/// # Errors
+/// Those of the system.
+pub fn real(path: &Path) -> io::Result<PathBuf> {
+    if !cfg!(target_family = "wasm") {
+        return fs::canonicalize(path);
+    }
+    // Systems of WebAssembly cannot do that.
+    fs::metadata(path)?;
+    Ok(named(path)?.components().filter(|part| *part != Component::CurDir).collect())
 }
 
 /// The file that a path will name, where there is none yet: a link to nothing stays a link.
@@ -129,7 +142,8 @@ fn text(error: io::Error) -> String {
 /// Those of `put` and of the file; then what is there is as it was.
 pub fn beside(real: &Path, put: impl FnOnce(&mut dyn Write) -> Result<(), String>) -> Result<(), String> {
     let new = temporary(folder_of(real)).map_err(text)?;
-    if let Ok(before) = fs::metadata(real) {
+    // Files of WebAssembly have no permissions.
+    if let (Ok(before), false) = (fs::metadata(real), cfg!(target_family = "wasm")) {
         new.as_file().set_permissions(before.permissions()).map_err(text)?;
     }
     into(new.as_file(), put)?;

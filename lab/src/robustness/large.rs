@@ -134,7 +134,9 @@ fn ties(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
 /// answer fits.
 fn beyond_32_bits(device: &Device, report: &mut Report) -> Result<(), Error> {
     const N: usize = 92_683;
-    let needed = (N * (N - 1) / 2 * size_of::<nearmiss_kernels::abi::Pair>()) as u64;
+    // Also beyond an index of a machine of 32 bits.
+    let (n, row) = (N as u64, size_of::<nearmiss_kernels::abi::Pair>() as u64);
+    let needed = n * (n - 1) / 2 * row;
     let by_trees = Query::discrete().with_broad_phase(BroadPhase::Tree);
     let mut detector = OneQuery::new(device.clone(), vec![scene::identical(N)?], by_trees)?;
     report.asked += 1;
@@ -148,7 +150,7 @@ fn beyond_32_bits(device: &Device, report: &mut Report) -> Result<(), Error> {
     let found = OneQuery::new(device.clone(), vec![slanted(N)?], by_tiles)?.detect()?;
     report.asked += 1;
     report.missed += N.saturating_sub(found.len()) as u64;
-    let candidates = (N * (N + 1) / 2) as u64;
+    let candidates = n * (n + 1) / 2;
     if found.len() != N || found.stats.slices < 2 || found.stats.triangle_pairs != candidates {
         report.fail(|| {
             let (pairs, slices) = (found.stats.triangle_pairs, found.stats.slices);
