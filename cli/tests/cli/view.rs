@@ -104,6 +104,11 @@ fn rows_are_those_of_detect() {
         ([&[&t0[..], "--body-pairs"], &with[..]].concat(), vec![], vec!["body_a", "body_b"]),
     ] {
         let page = Page::written(&folder, &files);
+        let answer = ok(&[&["detect"], &files[..], &["--backend", "cpu", "--json"]].concat());
+        let answer: Value = serde_json::from_str(&answer).expect("JSON");
+        let last = page.head["moments"][0]["remarks"].as_array().and_then(|all| all.last());
+        let hash = format!("hash {}", answer["hash"].as_str().expect("a hash"));
+        assert_eq!(last.and_then(Value::as_str), Some(&hash[..]), "{files:?}");
         let csv = folder.path("a.csv");
         ok(&[&["detect"], &files[..], &more, &["--backend", "cpu", "--out", &csv]].concat());
         let csv = folder.read("a.csv");
