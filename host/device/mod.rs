@@ -257,7 +257,7 @@ impl Device {
         self.usage.allocations.fetch_add(1, Ordering::Relaxed);
         let bytes = len.checked_mul(size_of::<T>()).ok_or(Error::OutOfMemory {
             what: "device memory".into(),
-            asked: u64::MAX,
+            asked: (len as u64).saturating_mul(size_of::<T>() as u64),
             given: isize::MAX as u64,
         })?;
         let most = |given| Error::OutOfMemory {
