@@ -4,6 +4,7 @@
 #   OUT/crates      the four packages of the library, as crates.io takes them
 #   OUT/wheels      Python's, for Linux on x86-64 and aarch64, glibc 2.17 and later, each with its bill of materials inside
 #   OUT/archives    the program with its manual pages and completions, and the C interface, for both machines
+#   OUT/wasm        the program in WebAssembly, and the page that runs it in a browser
 #   OUT/*.json      the bill of materials of each package (CycloneDX), OUT/SHA256SUMS of everything
 #
 # Rationale
@@ -137,6 +138,9 @@ for target in $intel $arm; do
     done
 done
 
+echo "=== WebAssembly"
+NEARMISS=$nearmiss .ci/wasm.sh "$out/wasm"
+
 echo "=== bills of materials"
 tool cargo-cyclonedx
 cargo cyclonedx --format json --all-features --override-filename sbom
@@ -145,7 +149,7 @@ for folder in "" kernels emulator io lab cli c python; do
     [ ! -f "$bill" ] || mv "$bill" "$out/nearmiss${folder:+-$folder}.cyclonedx.json"
 done
 
-(cd "$out" && find crates wheels archives ./*.json -type f | sort | xargs sha256sum >SHA256SUMS)
+(cd "$out" && find crates wheels archives wasm ./*.json -type f | sort | xargs sha256sum >SHA256SUMS)
 cat "$out/SHA256SUMS"
 cat <<END
 

@@ -21,6 +21,7 @@ const HELD: [(&str, usize); 16] = [
     ("python/README.md", 14),
     ("plugs/interop/README.md", 14),
     ("plugs/mpi/README.md", 14),
+    ("plugs/wasm/README.md", 14),
     ("docs/internals", 16),
 ];
 
