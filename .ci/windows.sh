@@ -75,7 +75,8 @@ brings "$exe"
 brings "$interface/bin/nearmiss_c.dll"
 
 wine "$exe" --version | grep -F "nearmiss $version"
-wine "$exe" selftest
+# Every stage, on small scenes: nothing is optimised for speed here.
+wine "$exe" selftest --triangles 500 --cases 10 | tail -1 | grep "^ok: "
 
 echo "=== no driver"
 status=0
@@ -114,6 +115,8 @@ runs() {
 }
 (runs linux "$linux") >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 (runs windows wine "$exe") >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+# Times and names of machines are each system's own.
+sed -E -i 's/"(ms|device|bytes)":(\{[^}]*\}|"[^"]*"|[0-9]+)//g' "$work"/{linux,windows}/rows.json
 diff -rq "$work/linux" "$work/windows"
 [ "$(wc -l <"$work/linux/rows.csv")" -gt 100 ] || { echo "too few rows to compare"; exit 1; }
 # One byte, and ends of lines: each is noticed.
