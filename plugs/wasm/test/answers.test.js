@@ -69,6 +69,11 @@ for (const args of QUESTIONS) {
   });
 }
 
+test("the package has the version of the program", async () => {
+  const { version } = JSON.parse(readFileSync(new URL("../package.json", import.meta.url), "utf8"));
+  assert.equal((await run(program, ["--version"])).out, `nearmiss ${version}\n`);
+});
+
 test("a result that differs is noticed", async () => {
   const args = ["detect", ...STEP, "--out", "rows.csv"];
   const right = await run(program, args, files);
