@@ -1,7 +1,7 @@
 //! A detector for one thread at a time, with a count of its answers.
 
 use crate::borrowed::Held;
-use nearmiss::Error;
+use nearmiss::{Error, Scene};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -29,40 +29,82 @@ pub enum Does {
     Collects(nearmiss::Query),
 }
 
+/// State of a scene that its answers are compared with.
+pub struct Current {
+    /// No other detector of the program has it.
+    number: u64,
+    /// Counts what may move bodies.
+    moves: u64,
+    /// Names of all bodies by their numbers, once an answer has them.
+    names: Option<Arc<Vec<String>>>,
+}
+
+/// How many detectors were made.
+static MADE: AtomicU64 = AtomicU64::new(0);
+
+impl Current {
+    pub fn new() -> Current {
+        Current { number: MADE.fetch_add(1, Ordering::Relaxed), moves: 0, names: None }
+    }
+
+    /// Counts a call.
+    pub fn count(&mut self, does: Does) {
+        if does == Does::Edits {
+            self.names = None;
+        }
+        if matches!(does, Does::Moves | Does::Edits | Does::Submits) {
+            self.moves += 1;
+        }
+    }
+
+    /// Names of all bodies by their numbers.
+    pub fn names(&mut self, of: &Scene) -> Arc<Vec<String>> {
+        let made = || Arc::new(of.bodies().iter().map(|body| body.name().to_owned()).collect());
+        self.names.get_or_insert_with(made).clone()
+    }
+
+    /// The stamp of the current answer.
+    pub fn stamp(&self) -> Stamp {
+        Stamp { detector: self.number, moves: self.moves }
+    }
+
+    /// Refuses answers of another detector, and of places where bodies no longer are.
+    pub fn check(&self, of: Stamp) -> Result<(), Error> {
+        let what = match of {
+            stamp if stamp == self.stamp() => return Ok(()),
+            Stamp { detector, .. } if detector == self.number => {
+                "the answer was found before bodies moved, came or went"
+            }
+            _ => "the answer is of another detector",
+        };
+        let advice = "use an answer with the detector that found it, before the next update";
+        Err(Error::InvalidArgument { what: what.into(), advice: advice.into() })
+    }
+}
+
 /// A detector that one thread at a time uses.
 pub struct Asked {
     pub detector: nearmiss::Detector,
     is_gpu: bool,
-    /// No other detector of the program has it.
-    number: u64,
+    current: Current,
     /// Counts what may move the answer that lies on the device.
     pub asked: u64,
-    /// Counts what may move bodies.
-    pub moves: u64,
     /// Queries that were collected since bodies last moved.
     collected: Vec<nearmiss::Query>,
-    /// Names of all bodies by their numbers, once an answer has them.
-    names: Option<Arc<Vec<String>>>,
     /// Keeps the arrays of updates that a GPU may still read, until a call waits.
     pub placing: Vec<Held>,
     /// Arrays that submissions read. Dropped after the detector, which reads them.
     pub held: Vec<Held>,
 }
 
-/// How many detectors were made.
-static MADE: AtomicU64 = AtomicU64::new(0);
-
 impl Asked {
     pub fn new(detector: nearmiss::Detector, is_gpu: bool) -> Asked {
-        let number = MADE.fetch_add(1, Ordering::Relaxed);
         Asked {
             detector,
             is_gpu,
-            number,
+            current: Current::new(),
             asked: 0,
-            moves: 0,
             collected: Vec::new(),
-            names: None,
             placing: Vec::new(),
             held: Vec::new(),
         }
@@ -91,16 +133,11 @@ impl Asked {
     /// Counts a call.
     pub fn count(&mut self, does: Does) {
         self.asked += u64::from(matches!(does, Does::Moves | Does::Edits | Does::Queries));
-        if does == Does::Edits {
-            self.names = None;
-        }
-        let may_move = match does {
-            Does::Moves | Does::Edits | Does::Submits => true,
-            Does::Queries | Does::Reads => false,
-            Does::Collects(query) => self.collected.contains(&query),
-        };
-        if may_move {
-            self.moves += 1;
+        // What was collected since bodies moved may be so again by a recording.
+        let again = matches!(does, Does::Collects(query) if self.collected.contains(&query));
+        let does_move = if again { Does::Moves } else { does };
+        self.current.count(does_move);
+        if matches!(does_move, Does::Moves | Does::Edits | Does::Submits) {
             self.collected.clear();
         }
         if let Does::Collects(query) = does {
@@ -110,26 +147,16 @@ impl Asked {
 
     /// Names of all bodies by their numbers.
     pub fn names(&mut self) -> Arc<Vec<String>> {
-        let bodies = self.detector.scene().bodies();
-        let made = || Arc::new(bodies.iter().map(|body| body.name().to_owned()).collect());
-        self.names.get_or_insert_with(made).clone()
+        self.current.names(self.detector.scene())
     }
 
     /// The stamp of the current answer.
     pub fn stamp(&self) -> Stamp {
-        Stamp { detector: self.number, moves: self.moves }
+        self.current.stamp()
     }
 
-    /// Refuses answers of another detector, and of places where bodies no longer are.
+    /// As [`Current::check`].
     pub fn check(&self, of: Stamp) -> Result<(), Error> {
-        let what = match of {
-            stamp if stamp == self.stamp() => return Ok(()),
-            Stamp { detector, .. } if detector == self.number => {
-                "the answer was found before bodies moved, came or went"
-            }
-            _ => "the answer is of another detector",
-        };
-        let advice = "use an answer with the detector that found it, before the next update";
-        Err(Error::InvalidArgument { what: what.into(), advice: advice.into() })
+        self.current.check(of)
     }
 }

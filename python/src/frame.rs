@@ -3,13 +3,13 @@
 use crate::borrowed::{BorrowedRows, Held, is_on_gpu, on_cpu, on_gpu};
 use crate::errors::choice;
 use crate::host::{Most, positions};
-use crate::key::Key;
+use crate::key::{Key, bodies};
 use crate::matrix::{is_matrix, pose_of};
 use crate::pose::{GivenPose, Pose};
 use crate::pose_step::PoseStep;
-use nearmiss::Device;
 use nearmiss::mesh::Positions;
-use nearmiss::scene::{BodyId, DeviceMotion, Motion};
+use nearmiss::scene::{BodyId, BodyKind, DeviceMotion, Motion};
+use nearmiss::{Device, Error, Scene};
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyMapping, PyTuple};
 
@@ -29,11 +29,34 @@ pub struct Named {
     pub is_rigid: bool,
 }
 
+impl Named {
+    /// The bodies of keys, in their order.
+    ///
+    /// # Errors
+    /// As of [`bodies`].
+    pub fn all(scene: &Scene, keys: &[Key]) -> Result<Vec<Named>, Error> {
+        let named = |id| {
+            let body = scene.get(id)?;
+            let (name, is_rigid) = (body.name().to_owned(), body.kind() == BodyKind::Rigid);
+            Some(Named { id, name, vertices: body.vertex_count(), is_rigid })
+        };
+        Ok(bodies(scene, keys)?.into_iter().filter_map(named).collect())
+    }
+}
+
+/// The device that reads a frame.
+#[derive(Clone, Copy)]
+pub struct Reader<'a> {
+    pub device: &'a Device,
+    /// Whether it reads arrays of numpy in place. Several devices each have a copy.
+    pub in_place: bool,
+}
+
 /// Owner of positions: its device, its name in messages, its number of vertices, and whether it takes
 /// poses.
 #[derive(Clone, Copy)]
 struct Of<'a> {
-    device: &'a Device,
+    reader: Reader<'a>,
     what: &'a str,
     most: Most<'a>,
     is_rigid: bool,
@@ -53,12 +76,12 @@ enum End {
 
 impl Frame {
     /// A frame of bodies and their given places.
-    pub fn of(inputs: Vec<(Named, Bound<'_, PyAny>)>, device: &Device) -> PyResult<Frame> {
+    pub fn of(inputs: Vec<(Named, Bound<'_, PyAny>)>, reader: Reader<'_>) -> PyResult<Frame> {
         let mut frame = Frame::default();
         for (Named { id, name, vertices, is_rigid }, input) in inputs {
             let what = format!("positions of body {id}");
             let most = Most::Of { body: &name, vertices };
-            let given = frame.given(&input, Of { device, what: &what, most, is_rigid })?;
+            let given = frame.given(&input, Of { reader, what: &what, most, is_rigid })?;
             frame.bodies.push((id, given));
         }
         Ok(frame)
@@ -87,7 +110,7 @@ impl Frame {
     }
 
     fn given(&mut self, input: &Bound<'_, PyAny>, of: Of<'_>) -> PyResult<Given> {
-        let Of { device, what, most, .. } = of;
+        let Of { reader: Reader { device, .. }, what, most, .. } = of;
         if let Ok(list) = input.cast::<PyList>()
             && list.iter().any(|end| end.is_instance_of::<Pose>())
         {
@@ -156,7 +179,7 @@ impl Frame {
 /// A pose, or the pose of a matrix for a rigid body; `None` for other inputs.
 fn pose(object: &Bound<'_, PyAny>, of: Of<'_>) -> PyResult<Option<GivenPose>> {
     if let Ok(pose) = object.cast::<Pose>() {
-        return pose.get().given(object.py(), of.device).map(Some);
+        return pose.get().given(object.py(), of.reader.device).map(Some);
     }
     match (of.is_rigid, is_on_gpu(object)) {
         (false, _) => Ok(None),
@@ -170,11 +193,13 @@ fn pose(object: &Bound<'_, PyAny>, of: Of<'_>) -> PyResult<Option<GivenPose>> {
 }
 
 /// One end: read where it lies if the device reaches it there, else copied.
-fn end(object: &Bound<'_, PyAny>, Of { device, what, most, .. }: Of<'_>) -> PyResult<End> {
+fn end(object: &Bound<'_, PyAny>, Of { reader, what, most, .. }: Of<'_>) -> PyResult<End> {
+    let Reader { device, in_place } = reader;
     if is_on_gpu(object) {
         return on_gpu(object, device, (3, what)).map(End::Borrowed);
     }
-    if !device.is_gpu()
+    if in_place
+        && !device.is_gpu()
         && let Some(rows) = on_cpu(object, what)?
     {
         return Ok(End::Borrowed(rows));

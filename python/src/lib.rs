@@ -31,6 +31,7 @@ mod questions;
 mod research;
 mod rows;
 mod scene;
+mod several;
 mod thickness;
 mod turns;
 mod watch;
@@ -70,6 +71,8 @@ mod _native {
     use super::rows::{Contacts, FirstContact, NearPairs, NearestTriangles, TrianglePairs};
     #[pymodule_export]
     use super::scene::{Body, Scene};
+    #[pymodule_export]
+    use super::several::MultiDetector;
 
     #[pymodule_init]
     fn version(module: &Bound<'_, PyModule>) -> PyResult<()> {

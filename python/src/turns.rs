@@ -5,7 +5,7 @@ use crate::asked::{Asked, Does};
 use crate::borrowed::Held;
 use crate::detector::Detector;
 use crate::errors::{choice, raised};
-use crate::frame::{Frame, Named, keyed};
+use crate::frame::{Frame, Named, Reader, keyed};
 use crate::key::{Key, bodies};
 use crate::pose::{Ends, Pose};
 use crate::watch::watched;
@@ -134,16 +134,9 @@ impl Detector {
     /// The motions of bodies, as Python gives them.
     pub fn frame_of(&self, py: Python<'_>, inputs: &Bound<'_, PyAny>) -> PyResult<Frame> {
         let (keys, places): (Vec<_>, Vec<_>) = keyed(inputs)?.into_iter().unzip();
-        let named = self.look(py, |detector| {
-            let scene = detector.scene();
-            let named = |id| {
-                let body = scene.get(id)?;
-                let (name, is_rigid) = (body.name().to_owned(), body.kind() == BodyKind::Rigid);
-                Some(Named { id, name, vertices: body.vertex_count(), is_rigid })
-            };
-            Ok::<_, Error>(bodies(scene, &keys)?.into_iter().filter_map(named).collect::<Vec<_>>())
-        })?;
-        Frame::of(named.map_err(raised)?.into_iter().zip(places).collect(), &self.device.get().device)
+        let named = self.look(py, |detector| Named::all(detector.scene(), &keys))?;
+        let reader = Reader { device: &self.device.get().device, in_place: true };
+        Frame::of(named.map_err(raised)?.into_iter().zip(places).collect(), reader)
     }
 
     /// Moves bodies.

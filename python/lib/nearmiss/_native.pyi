@@ -1,5 +1,5 @@
 from os import PathLike
-from typing import Any, Generic, Iterable, Literal, Mapping, Tuple, TypeVar, Union, overload
+from typing import Any, Generic, Iterable, Literal, Mapping, Sequence, Tuple, TypeVar, Union, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -1338,3 +1338,99 @@ class Detector:
     @property
     def device(self) -> Device:
         """Device of this detector."""
+
+class MultiDetector:
+    """Scene on several devices of one host, which divide the work of each query.
+
+    Each device has all positions and finds the pairs of its share. Answers and hashes are those of a
+    Detector. The first frame is divided evenly, the next ones by the times of the last.
+
+    - `scene`: a Scene, or one Body, whose number is then 0.
+    - `devices`: at least one Device, such as [Device(gpu=0), Device(gpu=1)].
+
+    Takes Discrete, Continuous, Earliest and Near. Positions are in host memory: each device gets a
+    copy. There are no submissions. Raises InvalidArgumentError without devices.
+    """
+
+    def __new__(cls, scene: Scene | Body, devices: Sequence[Device]) -> MultiDetector: ...
+
+    def update(self, inputs: Motions) -> None:
+        """Move bodies for the next queries: see Detector.update for the arguments.
+
+        Raises as Detector.update does, and InvalidArgumentError for arrays of a GPU: then nothing has
+        moved.
+        """
+
+    def query(self, query: Query[_A]) -> _A:
+        """Return the answer to a query, of the bodies where they are.
+
+        Raises as Detector.query does, and InvalidArgumentError for a query that cannot be divided: Distance,
+        BodyPairs and BodyDistances.
+        """
+
+    def step(self, inputs: Motions, query: Query[_A]) -> _A:
+        """Move bodies and return the answer to a query.
+
+        As `update` and `query`. An error of the motions or of the query has moved nothing.
+        """
+
+    @overload
+    def geometry(self, answer: Contacts | NearPairs) -> Geometry:
+        """Return where the features or triangles of an answer's rows meet: see Detector.geometry."""
+    @overload
+    def geometry(self, answer: TrianglePairs) -> PairGeometry:
+        """Return where the features or triangles of an answer's rows meet: see Detector.geometry."""
+
+    def first_contacts(self, first: FirstContact) -> Contacts:
+        """Return the contacts at the time of an earliest answer: see Detector.first_contacts."""
+
+    def shares(self, query: Query[Any]) -> list[dict[str, Any]]:
+        """Return the part of each device in the last frame of a query; empty before the first frame.
+
+        A dictionary a device: `device`, its name; `tiles`, its part of them, 0 to 1; `ms`, milliseconds by
+        its own clock.
+        """
+
+    def interrupt(self) -> None:
+        """End the call of another thread or, if none runs, the next call: see Detector.interrupt."""
+
+    def add(self, body: Body) -> int:
+        """Add a body, and return its number."""
+
+    def remove(self, body: Key) -> None:
+        """Remove a body, by number or name. The next body that is added may take its number."""
+
+    def replace(self, body: Key, by: Body) -> None:
+        """Replace a body, by number or name."""
+
+    def leave_out(self, pairs: Iterable[tuple[Key, Key]]) -> None:
+        """Replace the list of pairs of bodies that are not tested: see Detector.leave_out."""
+
+    @property
+    def left_out(self) -> list[tuple[int, int]]:
+        """Pairs of bodies that are left out: the smaller number first, ascending."""
+
+    def set_thickness(self, body: Key, thickness: Union[float, Array]) -> None:
+        """Set the thickness of a body, from the next query on: see Detector.set_thickness."""
+
+    def exclude(
+        self,
+        body: Key,
+        *,
+        ring: int | None = None,
+        within: float | None = None,
+        rest: Array | None = None,
+        faces: Array | None = None,
+    ) -> None:
+        """Replace the exclusions of a body: see Scene.exclude for the arguments, and Detector.exclude."""
+
+    def exclude_pairs(self, body: Key, other: Key, pairs: Array) -> None:
+        """Replace the list of pairs of vertices of two bodies: see Detector.exclude_pairs."""
+
+    @property
+    def bodies(self) -> list[int]:
+        """Numbers of all bodies, ascending."""
+
+    @property
+    def devices(self) -> list[Device]:
+        """Devices of this detector."""

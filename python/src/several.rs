@@ -1,0 +1,299 @@
+//! A scene on several devices of one host.
+
+use crate::answer::{Answer, typed};
+use crate::asked::{Current, Does};
+use crate::detector::Answered;
+use crate::device::Device;
+use crate::errors::{choice, raised};
+use crate::exclusions;
+use crate::frame::{Frame, Named, Reader, keyed};
+use crate::geometry::Geometry;
+use crate::key::{self, Key, Pairs, bodies, body_of, numbers, pairs_of};
+use crate::pairs::PairGeometry;
+use crate::query::Query;
+use crate::rows::FirstContact;
+use crate::scene::{Body, Scene, scene_of};
+use crate::thickness::thickness_of;
+use crate::turns::python;
+use crate::watch::{Watch, watched};
+use nearmiss::contacts::Geometry as Places;
+use nearmiss::scene::{BodyId, Motion};
+use nearmiss::words::counted;
+use nearmiss::{Error, Interrupt};
+use pyo3::prelude::*;
+use std::sync::{Mutex, MutexGuard};
+
+/// Scene on several devices of one host, which divide the work of each query.
+///
+/// Each device has all positions and finds the pairs of its share. Answers and hashes are those of a
+/// Detector. The first frame is divided evenly, the next ones by the times of the last.
+///
+/// - `scene`: a Scene, or one Body, whose number is then 0.
+/// - `devices`: at least one Device, such as [Device(gpu=0), Device(gpu=1)].
+///
+/// Takes Discrete, Continuous, Earliest and Near. Positions are in host memory: each device gets a
+/// copy. There are no submissions. Raises InvalidArgumentError without devices.
+#[pyclass(module = "nearmiss", frozen)]
+pub struct MultiDetector {
+    one: Mutex<Several>,
+    devices: Vec<Py<Device>>,
+    /// Ends its calls.
+    interrupt: Interrupt,
+}
+
+struct Several {
+    detector: nearmiss::MultiDetector,
+    current: Current,
+}
+
+/// Waits for the turn of each device, in one order for all threads.
+fn turns<'a>(devices: &'a [Py<Device>], watch: &Watch) -> Result<Vec<MutexGuard<'a, ()>>, Error> {
+    let mut turns: Vec<&Mutex<()>> = devices.iter().map(|device| &device.get().turn).collect();
+    turns.sort_by_key(|turn| std::ptr::from_ref(*turn));
+    turns.dedup_by_key(|turn| std::ptr::from_ref(*turn));
+    turns.into_iter().map(|turn| watch.lock(turn)).collect()
+}
+
+impl MultiDetector {
+    /// Runs a call, in turn with all that share a device. A signal ends it.
+    fn run<T: Send>(
+        &self,
+        py: Python<'_>,
+        does: Does,
+        call: impl FnOnce(&mut Several) -> Result<T, Error> + Send,
+    ) -> PyResult<T> {
+        let done = watched(py, &self.interrupt, |watch| {
+            let mut one = watch.lock(&self.one)?;
+            let _turns = turns(&self.devices, watch)?;
+            watch.begins();
+            one.current.count(does);
+            call(&mut one)
+        });
+        done?.map_err(raised)
+    }
+
+    /// Looks at the detector.
+    fn look<T: Send>(
+        &self,
+        py: Python<'_>,
+        look: impl FnOnce(&nearmiss::MultiDetector) -> T + Send,
+    ) -> PyResult<T> {
+        let done = watched(py, &self.interrupt, |watch| watch.lock(&self.one).map(|one| look(&one.detector)));
+        done?.map_err(raised)
+    }
+
+    /// Runs a call that returns an answer.
+    fn answer<'py>(
+        &self,
+        py: Python<'py>,
+        does: Does,
+        call: impl FnOnce(&mut Several) -> Result<nearmiss::Contacts, Error> + Send,
+    ) -> Answered<'py> {
+        let (contacts, stamp, names) = self.run(py, does, |one| {
+            let contacts = call(one)?;
+            Ok((contacts, one.current.stamp(), one.current.names(one.detector.scene())))
+        })?;
+        typed(py, contacts, stamp, names)
+    }
+
+    /// Motions of bodies, in host memory.
+    fn frame_of(&self, py: Python<'_>, inputs: &Bound<'_, PyAny>) -> PyResult<Frame> {
+        let (keys, places): (Vec<_>, Vec<_>) = keyed(inputs)?.into_iter().unzip();
+        let named = self.look(py, |detector| Named::all(detector.scene(), &keys))?.map_err(raised)?;
+        let reader = Reader { device: &self.devices[0].get().device, in_place: false };
+        let frame = Frame::of(named.into_iter().zip(places).collect(), reader)?;
+        let inputs = frame.inputs();
+        match inputs.iter().find(|(_, input)| matches!(input, Motion::OnDevice(_))) {
+            None => Ok(frame),
+            Some((id, _)) => Err(choice(
+                format!("positions of body {id} in the memory of one device, for several"),
+                "give numpy arrays, or poses of numbers",
+            )),
+        }
+    }
+
+    fn body(&self, py: Python<'_>, body: Key) -> PyResult<BodyId> {
+        let found = self.look(py, |detector| bodies(detector.scene(), &[body]))?;
+        Ok(found.map_err(raised)?.swap_remove(0))
+    }
+}
+
+#[pymethods]
+impl MultiDetector {
+    #[new]
+    #[pyo3(signature = (scene, devices))]
+    fn new(py: Python<'_>, scene: &Bound<'_, PyAny>, devices: Vec<Py<Device>>) -> PyResult<MultiDetector> {
+        let (all, interrupt) = (scene_of(scene)?, Interrupt::new());
+        let one = |device: &Py<Device>| device.get().device.clone().with_interrupt(&interrupt);
+        let on = devices.iter().map(one).collect();
+        let detector = watched(py, &interrupt, |watch| {
+            let _turns = turns(&devices, watch)?;
+            watch.begins();
+            nearmiss::MultiDetector::new(on, all)
+        });
+        let detector = detector?.map_err(raised)?;
+        if let Ok(scene) = scene.cast::<Scene>() {
+            scene.try_borrow_mut()?.taken = true;
+        }
+        let one = Mutex::new(Several { detector, current: Current::new() });
+        Ok(MultiDetector { one, devices, interrupt })
+    }
+
+    /// Move bodies for the next queries: see Detector.update for the arguments.
+    ///
+    /// Raises as Detector.update does, and InvalidArgumentError for arrays of a GPU: then nothing has
+    /// moved.
+    fn update(&self, py: Python<'_>, inputs: &Bound<'_, PyAny>) -> PyResult<()> {
+        let frame = self.frame_of(py, inputs)?;
+        let given = frame.inputs();
+        self.run(py, Does::Moves, |one| one.detector.update(&given))
+    }
+
+    /// Return the answer to a query, of the bodies where they are.
+    ///
+    /// Raises as Detector.query does, and InvalidArgumentError for a query that cannot be divided: Distance,
+    /// BodyPairs and BodyDistances.
+    fn query<'py>(&self, py: Python<'py>, query: &Query) -> Answered<'py> {
+        let query = query.query;
+        self.answer(py, Does::Queries, |one| one.detector.query(&query))
+    }
+
+    /// Move bodies and return the answer to a query.
+    ///
+    /// As `update` and `query`. An error of the motions or of the query has moved nothing.
+    fn step<'py>(&self, py: Python<'py>, inputs: &Bound<'_, PyAny>, query: &Query) -> Answered<'py> {
+        let frame = self.frame_of(py, inputs)?;
+        let (given, query) = (frame.inputs(), query.query);
+        self.answer(py, Does::Moves, |one| one.detector.step(&given, &query))
+    }
+
+    /// Return where the features or triangles of an answer's rows meet: see Detector.geometry.
+    fn geometry<'py>(&self, py: Python<'py>, answer: &Answer) -> Answered<'py> {
+        let places = self.run(py, Does::Reads, |one| {
+            one.current.check(answer.stamp)?;
+            one.detector.geometry(&answer.contacts)
+        })?;
+        match places {
+            Places::Contacts(rows) => Ok(Bound::new(py, Geometry::from(rows))?.into_any()),
+            Places::Pairs(rows) => Ok(Bound::new(py, PairGeometry::from(rows))?.into_any()),
+        }
+    }
+
+    /// Return the contacts at the time of an earliest answer: see Detector.first_contacts.
+    fn first_contacts<'py>(&self, py: Python<'py>, first: PyRef<'_, FirstContact>) -> Answered<'py> {
+        let about: &Answer = first.as_super();
+        self.answer(py, Does::Queries, |one| {
+            one.current.check(about.stamp)?;
+            one.detector.first_contacts(&about.contacts).map(nearmiss::Contacts::from)
+        })
+    }
+
+    /// Return the part of each device in the last frame of a query; empty before the first frame.
+    ///
+    /// A dictionary a device: `device`, its name; `tiles`, its part of them, 0 to 1; `ms`, milliseconds by
+    /// its own clock.
+    fn shares<'py>(&self, py: Python<'py>, query: &Query) -> Answered<'py> {
+        let query = query.query;
+        python(py, &self.look(py, |detector| detector.shares(&query))?)
+    }
+
+    /// End the call of another thread or, if none runs, the next call: see Detector.interrupt.
+    fn interrupt(&self) {
+        self.interrupt.trigger();
+    }
+
+    /// Add a body, and return its number.
+    fn add(&self, py: Python<'_>, body: &Body) -> PyResult<usize> {
+        self.run(py, Does::Edits, |one| one.detector.add(&body.body)).map(BodyId::index)
+    }
+
+    /// Remove a body, by number or name. The next body that is added may take its number.
+    fn remove(&self, py: Python<'_>, #[pyo3(from_py_with = body_of)] body: Key) -> PyResult<()> {
+        let id = self.body(py, body)?;
+        self.run(py, Does::Edits, |one| one.detector.remove(id).map(drop))
+    }
+
+    /// Replace a body, by number or name.
+    fn replace(&self, py: Python<'_>, #[pyo3(from_py_with = body_of)] body: Key, by: &Body) -> PyResult<()> {
+        let id = self.body(py, body)?;
+        self.run(py, Does::Edits, |one| one.detector.replace(id, &by.body))
+    }
+
+    /// Replace the list of pairs of bodies that are not tested: see Detector.leave_out.
+    fn leave_out(&self, py: Python<'_>, #[pyo3(from_py_with = pairs_of)] pairs: Pairs) -> PyResult<()> {
+        self.run(py, Does::Queries, |one| {
+            let list = key::pairs(one.detector.scene(), &pairs)?;
+            one.detector.leave_out(&list)
+        })
+    }
+
+    /// Pairs of bodies that are left out: the smaller number first, ascending.
+    #[getter]
+    fn left_out(&self, py: Python<'_>) -> PyResult<Vec<(usize, usize)>> {
+        self.look(py, |detector| numbers(detector.left_out()))
+    }
+
+    /// Set the thickness of a body, from the next query on: see Detector.set_thickness.
+    fn set_thickness(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = body_of)] body: Key,
+        thickness: Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let id = self.body(py, body)?;
+        let thickness = thickness_of(&thickness, &format!("body {id}"))?;
+        self.run(py, Does::Edits, |one| one.detector.set_thickness(id, thickness))
+    }
+
+    /// Replace the exclusions of a body: see Scene.exclude for the arguments, and Detector.exclude.
+    #[pyo3(signature = (body, *, ring = None, within = None, rest = None, faces = None))]
+    fn exclude(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = body_of)] body: Key,
+        ring: Option<&Bound<'_, PyAny>>,
+        within: Option<f64>,
+        rest: Option<&Bound<'_, PyAny>>,
+        faces: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let (id, given) = (self.body(py, body)?, exclusions::Given::of(ring, within, rest, faces)?);
+        self.run(py, Does::Queries, |one| {
+            let own = given.of_body(one.detector.scene(), id);
+            one.detector.exclude(id, &own)
+        })
+    }
+
+    /// Replace the list of pairs of vertices of two bodies: see Detector.exclude_pairs.
+    fn exclude_pairs(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = body_of)] body: Key,
+        #[pyo3(from_py_with = body_of)] other: Key,
+        pairs: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let (both, pairs) = ([body, other], exclusions::pairs(pairs)?);
+        self.run(py, Does::Queries, |one| {
+            let ids = key::each(one.detector.scene(), &both)?;
+            one.detector.exclude_pairs(ids, &pairs)
+        })
+    }
+
+    /// Numbers of all bodies, ascending.
+    #[getter]
+    fn bodies(&self, py: Python<'_>) -> PyResult<Vec<usize>> {
+        self.look(py, |detector| detector.scene().ids().map(BodyId::index).collect())
+    }
+
+    /// Devices of this detector.
+    #[getter]
+    fn devices(&self, py: Python<'_>) -> Vec<Py<Device>> {
+        self.devices.iter().map(|device| device.clone_ref(py)).collect()
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let bodies = self.look(py, |detector| detector.scene().ids().count())?;
+        let bodies = counted(bodies as u64, "body", "bodies");
+        let devices = counted(self.devices.len() as u64, "device", "devices");
+        Ok(format!("<nearmiss.MultiDetector: {bodies}, {devices}>"))
+    }
+}
