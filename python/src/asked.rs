@@ -133,7 +133,7 @@ impl Asked {
     /// Counts a call.
     pub fn count(&mut self, does: Does) {
         self.asked += u64::from(matches!(does, Does::Moves | Does::Edits | Does::Queries));
-        // What was collected since bodies moved may be so again by a recording.
+        // A recording may have moved bodies since the query was collected.
         let again = matches!(does, Does::Collects(query) if self.collected.contains(&query));
         let does_move = if again { Does::Moves } else { does };
         self.current.count(does_move);
