@@ -47,14 +47,14 @@ impl Current {
         Current { number: MADE.fetch_add(1, Ordering::Relaxed), moves: 0, names: None }
     }
 
-    /// Counts a call.
-    pub fn count(&mut self, does: Does) {
+    /// Counts a call, and returns whether it may move bodies.
+    pub fn count(&mut self, does: Does) -> bool {
         if does == Does::Edits {
             self.names = None;
         }
-        if matches!(does, Does::Moves | Does::Edits | Does::Submits) {
-            self.moves += 1;
-        }
+        let may_move = matches!(does, Does::Moves | Does::Edits | Does::Submits);
+        self.moves += u64::from(may_move);
+        may_move
     }
 
     /// Names of all bodies by their numbers.
@@ -135,9 +135,7 @@ impl Asked {
         self.asked += u64::from(matches!(does, Does::Moves | Does::Edits | Does::Queries));
         // A recording may have moved bodies since the query was collected.
         let again = matches!(does, Does::Collects(query) if self.collected.contains(&query));
-        let does_move = if again { Does::Moves } else { does };
-        self.current.count(does_move);
-        if matches!(does_move, Does::Moves | Does::Edits | Does::Submits) {
+        if self.current.count(if again { Does::Moves } else { does }) {
             self.collected.clear();
         }
         if let Does::Collects(query) = does {

@@ -5,10 +5,10 @@ use crate::asked::{Asked, Does};
 use crate::device::Device;
 use crate::errors::raised;
 use crate::exclusions;
-use crate::geometry::Geometry;
+use crate::geometry;
 use crate::key::{self, Key, Pairs, body_of, numbers, pairs_of};
 use crate::on_device::DeviceAnswer;
-use crate::pairs::{Curves, PairGeometry};
+use crate::pairs::Curves;
 use crate::pose::Pose;
 use crate::query::{Query, queries_of};
 use crate::rows::TrianglePairs;
@@ -16,7 +16,6 @@ use crate::scene::Body;
 use crate::thickness::thickness_of;
 use crate::turns::python;
 use nearmiss::Interrupt;
-use nearmiss::contacts::Geometry as Places;
 use nearmiss::research::DetectorExt;
 use nearmiss::scene::BodyId;
 use nearmiss::words::counted;
@@ -119,10 +118,7 @@ impl Detector {
     /// PairGeometry for TrianglePairs: how they meet, and the segment in which they do.
     /// Raises InvalidArgumentError for other answers, and for those of the solver "moller".
     fn geometry<'py>(&self, py: Python<'py>, answer: &Answer) -> Answered<'py> {
-        match self.work_of(py, answer, |detector, found| detector.geometry(found))? {
-            Places::Contacts(rows) => Ok(Bound::new(py, Geometry::from(rows))?.into_any()),
-            Places::Pairs(rows) => Ok(Bound::new(py, PairGeometry::from(rows))?.into_any()),
-        }
+        geometry::typed(py, self.work_of(py, answer, |detector, found| detector.geometry(found))?)
     }
 
     /// Return the curves in which surfaces cross, chained from the rows that cross.

@@ -2,7 +2,8 @@
 
 use crate::columns::Columns;
 use crate::host::rows;
-use nearmiss::contacts::ContactGeometry;
+use crate::pairs::PairGeometry;
+use nearmiss::contacts::{ContactGeometry, Geometry as Places};
 use nearmiss::words::counted;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
@@ -22,6 +23,14 @@ impl From<Vec<ContactGeometry>> for Geometry {
     fn from(rows: Vec<ContactGeometry>) -> Geometry {
         Geometry { rows, columns: Columns::default() }
     }
+}
+
+/// Places of the rows of an answer, by the class of the answer.
+pub fn typed(py: Python<'_>, places: Places) -> PyResult<Bound<'_, PyAny>> {
+    Ok(match places {
+        Places::Contacts(rows) => Bound::new(py, Geometry::from(rows))?.into_any(),
+        Places::Pairs(rows) => Bound::new(py, PairGeometry::from(rows))?.into_any(),
+    })
 }
 
 impl Geometry {

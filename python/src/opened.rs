@@ -10,6 +10,17 @@ use nearmiss::Interrupt;
 use pyo3::prelude::*;
 use std::sync::Mutex;
 
+/// A scene has become that of a detector.
+///
+/// # Errors
+/// That of Python if the scene is being changed.
+pub fn take(scene: &Bound<'_, PyAny>) -> PyResult<()> {
+    if let Ok(scene) = scene.cast::<Scene>() {
+        scene.try_borrow_mut()?.taken = true;
+    }
+    Ok(())
+}
+
 impl Detector {
     /// Opens a detector; on the default device if none is given.
     pub fn opened(
@@ -30,9 +41,7 @@ impl Detector {
             nearmiss::Detector::new(on, bodies)
         });
         let one = Mutex::new(Asked::new(detector?.map_err(raised)?, device.get().device.is_gpu()));
-        if let Ok(scene) = scene.cast::<Scene>() {
-            scene.try_borrow_mut()?.taken = true;
-        }
+        take(scene)?;
         Ok(Detector { one, device, interrupt })
     }
 }

@@ -7,16 +7,15 @@ use crate::device::Device;
 use crate::errors::{choice, raised};
 use crate::exclusions;
 use crate::frame::{Frame, Named, Reader, keyed};
-use crate::geometry::Geometry;
-use crate::key::{self, Key, Pairs, bodies, body_of, numbers, pairs_of};
-use crate::pairs::PairGeometry;
+use crate::geometry;
+use crate::key::{self, Key, Pairs, body_of, numbers, pairs_of};
+use crate::opened::take;
 use crate::query::Query;
 use crate::rows::FirstContact;
-use crate::scene::{Body, Scene, scene_of};
+use crate::scene::{Body, scene_of};
 use crate::thickness::thickness_of;
 use crate::turns::python;
-use crate::watch::{Watch, watched};
-use nearmiss::contacts::Geometry as Places;
+use crate::watch::{self, Watch, watched};
 use nearmiss::scene::{BodyId, Motion};
 use nearmiss::words::counted;
 use nearmiss::{Error, Interrupt};
@@ -78,8 +77,7 @@ impl MultiDetector {
         py: Python<'_>,
         look: impl FnOnce(&nearmiss::MultiDetector) -> T + Send,
     ) -> PyResult<T> {
-        let done = watched(py, &self.interrupt, |watch| watch.lock(&self.one).map(|one| look(&one.detector)));
-        done?.map_err(raised)
+        watch::look(py, &self.interrupt, &self.one, |one| look(&one.detector))
     }
 
     /// Runs a call that returns an answer.
@@ -113,8 +111,8 @@ impl MultiDetector {
     }
 
     fn body(&self, py: Python<'_>, body: Key) -> PyResult<BodyId> {
-        let found = self.look(py, |detector| bodies(detector.scene(), &[body]))?;
-        Ok(found.map_err(raised)?.swap_remove(0))
+        let [id] = self.look(py, |detector| key::each(detector.scene(), &[body]))?.map_err(raised)?;
+        Ok(id)
     }
 }
 
@@ -132,9 +130,7 @@ impl MultiDetector {
             nearmiss::MultiDetector::new(on, all)
         });
         let detector = detector?.map_err(raised)?;
-        if let Ok(scene) = scene.cast::<Scene>() {
-            scene.try_borrow_mut()?.taken = true;
-        }
+        take(scene)?;
         let one = Mutex::new(Several { detector, current: Current::new() });
         Ok(MultiDetector { one, devices, interrupt })
     }
@@ -173,10 +169,7 @@ impl MultiDetector {
             one.current.check(answer.stamp)?;
             one.detector.geometry(&answer.contacts)
         })?;
-        match places {
-            Places::Contacts(rows) => Ok(Bound::new(py, Geometry::from(rows))?.into_any()),
-            Places::Pairs(rows) => Ok(Bound::new(py, PairGeometry::from(rows))?.into_any()),
-        }
+        geometry::typed(py, places)
     }
 
     /// Return the contacts at the time of an earliest answer: see Detector.first_contacts.

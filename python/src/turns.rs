@@ -6,9 +6,9 @@ use crate::borrowed::Held;
 use crate::detector::Detector;
 use crate::errors::{choice, raised};
 use crate::frame::{Frame, Named, Reader, keyed};
-use crate::key::{Key, bodies};
+use crate::key::{self, Key};
 use crate::pose::{Ends, Pose};
-use crate::watch::watched;
+use crate::watch::{self, watched};
 use nearmiss::Error;
 use nearmiss::scene::{BodyId, BodyKind};
 use pyo3::prelude::*;
@@ -109,12 +109,7 @@ impl Detector {
 
     /// The same, with what is known of earlier calls.
     pub fn look_at<T: Send>(&self, py: Python<'_>, look: impl FnOnce(&Asked) -> T + Send) -> PyResult<T> {
-        // The lock is mostly free. Its holder may wait for the interpreter.
-        if let Ok(one) = self.one.try_lock() {
-            return Ok(look(&one));
-        }
-        let done = watched(py, &self.interrupt, |watch| watch.lock(&self.one).map(|one| look(&one)));
-        done?.map_err(raised)
+        watch::look(py, &self.interrupt, &self.one, look)
     }
 
     /// Does something with the device, in turn with all that share it.
@@ -179,8 +174,8 @@ impl Detector {
 
     /// The body of a key.
     pub fn body(&self, py: Python<'_>, key: Key) -> PyResult<BodyId> {
-        let found = self.look(py, |detector| bodies(detector.scene(), &[key]))?;
-        Ok(found.map_err(raised)?.swap_remove(0))
+        let [id] = self.look(py, |detector| key::each(detector.scene(), &[key]))?.map_err(raised)?;
+        Ok(id)
     }
 
     /// The place of a body at both ends of its step.

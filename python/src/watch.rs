@@ -123,6 +123,23 @@ pub fn watched<T: Send>(
     }
 }
 
+/// Looks at what a lock holds. A signal ends the wait for it.
+///
+/// # Errors
+/// The exception that a signal's handler raised.
+pub fn look<S: Send, T: Send>(
+    py: Python<'_>,
+    interrupt: &Interrupt,
+    at: &Mutex<S>,
+    look: impl FnOnce(&S) -> T + Send,
+) -> PyResult<T> {
+    // The lock is mostly free. Its holder may wait for the interpreter.
+    if let Ok(held) = at.try_lock() {
+        return Ok(look(&held));
+    }
+    watched(py, interrupt, |watch| watch.lock(at).map(|held| look(&held)))?.map_err(crate::errors::raised)
+}
+
 /// Runs work that nothing ends. A signal leaves it behind: it goes on by itself, and what it comes
 /// to is dropped.
 ///
