@@ -9,16 +9,18 @@ class Nothing extends Fd {
   }
 }
 
-/** Standard output or standard error: its bytes are kept, and its text is passed on. */
+/** Standard output or standard error: its bytes and its text are kept, and its text is passed on. */
 class Output extends Fd {
-  constructor(printed) {
+  constructor(printed = () => {}) {
     super();
-    Object.assign(this, { printed, parts: [], decoder: new TextDecoder() });
+    Object.assign(this, { printed, parts: [], text: "", decoder: new TextDecoder() });
   }
 
   fd_write(bytes) {
     this.parts.push(bytes.slice());
-    this.printed(this.decoder.decode(bytes, { stream: true }));
+    const text = this.decoder.decode(bytes, { stream: true });
+    this.text += text;
+    this.printed(text);
     return { ret: wasi.ERRNO_SUCCESS, nwritten: bytes.length };
   }
 
@@ -82,7 +84,7 @@ function* below(root, prefix = "") {
 export async function run(program, args, files = {}, printed = {}) {
   const root = folder(files);
   const given = new Map([...below(root)].map(([name, file]) => [name, [file, file.data]]));
-  const [out, err] = [printed.out, printed.err].map((say) => new Output(say ?? (() => {})));
+  const [out, err] = [printed.out, printed.err].map((print) => new Output(print));
   const here = new PreopenDirectory(".", root.contents);
   const host = new WASI(["nearmiss", ...args], [], [new Nothing(), out, err, here], {
     debug: false,
@@ -90,12 +92,11 @@ export async function run(program, args, files = {}, printed = {}) {
   const instance = await WebAssembly.instantiate(program, {
     wasi_snapshot_preview1: host.wasiImport,
   });
-  const text = async (output) => new TextDecoder().decode(await output.bytes());
   let status;
   try {
     status = host.start(instance);
   } catch (cause) {
-    const said = (await text(err)).trim();
+    const said = err.text.trim();
     throw new Error(`nearmiss has ended early: ${cause.message}${said && `; ${said}`}`, { cause });
   }
   const isNew = ([name, file]) => {
@@ -103,12 +104,11 @@ export async function run(program, args, files = {}, printed = {}) {
     return file !== before || file.data !== data;
   };
   const written = [...below(root)].filter(isNew).map(([name, file]) => [name, file.data]);
-  const stdout = await out.bytes();
   return {
     status,
-    stdout,
-    out: new TextDecoder().decode(stdout),
-    err: await text(err),
+    stdout: await out.bytes(),
+    out: out.text,
+    err: err.text,
     files: Object.fromEntries(written),
   };
 }
