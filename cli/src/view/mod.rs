@@ -171,8 +171,9 @@ impl<'a> View<'a> {
         let starts: Vec<u32> = paint::starts(bodies).into_iter().map(|(vertex, _)| vertex).collect();
         let rows = self.page.about.rows(found, &geometry, &starts);
         let lines = remarks(&summary);
-        let remarks = std::iter::once(line(&summary)).chain(lines.lines().map(|line| line.trim().to_owned()));
-        let remarks = remarks.chain([format!("hash {}", summary.hash)]);
+        let remarks = std::iter::once(line(&summary))
+            .chain(lines.lines().map(|line| line.trim().to_owned()))
+            .chain([format!("hash {}", summary.hash)]);
         let [starts, ends] = ends;
         let tested = Tested { rows: found.len(), remarks: remarks.collect(), starts, ends, turns };
         self.page.frame(Frame { moment, tested, met: met.collect(), rows }).map_err(Stop::File)
