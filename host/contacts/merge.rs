@@ -1,45 +1,38 @@
 //! Merges the answers to parts of a query, from several devices or slices.
 
-use super::{Caveat, Contact, Contacts, Rows, TrianglePair, near, sort};
+use super::{Caveat, Contact, Contacts, Keep, NearPair, RowList, Rows, TrianglePair};
+use crate::error::Error;
 use crate::stages::Stages;
 use nearmiss_emulator::Looks;
 
 impl Contacts {
     /// Merges the answers of shares: lists in canonical order, counts added. `combine` makes one
-    /// time of two: the longer for concurrent shares, the sum for sequential ones. `None` without
-    /// shares, or if an interrupt ends the work.
+    /// time of two: the longer for concurrent shares, the sum for sequential ones. Lists that devices
+    /// have written become one in memory from `keep`.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] if `looks` ends the work; those of `keep`; [`Error::Bug`] without shares.
     pub(crate) fn merged(
         shares: Vec<Contacts>,
         combine: impl Fn(f64, f64) -> f64,
+        keep: Keep,
         looks: &Looks,
-    ) -> Option<Contacts> {
-        let ordered = shares.len() < 2;
+    ) -> Result<Contacts, Error> {
+        let rows = if shares.len() > 1 { merged_rows(&shares, keep, looks)? } else { None };
         let mut all = shares.into_iter();
-        let mut whole = all.next()?;
+        let mut whole = all.next().ok_or_else(|| Error::Bug { what: "an answer of no share".into() })?;
+        whole.rows = rows.unwrap_or(whole.rows);
         for share in all {
             let (own, other) = (whole.stats.stages, share.stats.stages);
             whole.stats.stages = Stages::each(|stage| combine(stage(&own), stage(&other)));
             whole.add(share);
         }
-        if !ordered {
-            // Each share is sorted, so a merging sort suffices.
-            match &mut whole.rows {
-                Rows::Pairs(pairs) => sort::merge(pairs.to_mut(), TrianglePair::key, looks),
-                Rows::Contacts(contacts) => sort::merge(contacts.to_mut(), Contact::key, looks),
-                Rows::Near(pairs) => sort::merge(pairs.to_mut(), near::NearPair::key, looks),
-                // Queries of bodies have one share.
-                Rows::Earliest(_) | Rows::Distance(_) | Rows::BodyPairs(_) | Rows::BodyDistances(_) => {}
-            }
-        }
-        Some(whole)
+        Ok(whole)
     }
 
-    /// Appends the rows and counts of another share.
+    /// Adds the counts of another share, and its time or distance. Lists are those of all shares.
     fn add(&mut self, mut share: Contacts) {
         match (&mut self.rows, share.rows) {
-            (Rows::Pairs(own), Rows::Pairs(other)) => own.to_mut().extend_from_slice(&other),
-            (Rows::Contacts(own), Rows::Contacts(other)) => own.to_mut().extend_from_slice(&other),
-            (Rows::Near(own), Rows::Near(other)) => own.to_mut().extend_from_slice(&other),
             (Rows::Earliest(own), Rows::Earliest(other)) => {
                 let first = |toi: Option<f64>, undecided: u64| toi.map(|toi| (toi, undecided));
                 let both = [first(*own, self.undecided), first(other, share.undecided)];
@@ -86,4 +79,28 @@ impl Contacts {
             None => self.caveats.push(reason),
         }
     }
+}
+
+/// Returns the lists of all shares as one; `None` if their rows are no lists.
+fn merged_rows(shares: &[Contacts], keep: Keep, looks: &Looks) -> Result<Option<Rows>, Error> {
+    /// One list of those of one kind: all shares answer the same query.
+    macro_rules! one_list {
+        ($kind:ident, $row:ty) => {{
+            let of = |share| match share {
+                &Contacts { rows: Rows::$kind(ref list), .. } => Some(list),
+                _ => None,
+            };
+            let lists: Vec<_> = shares.iter().filter_map(of).collect();
+            Rows::$kind(RowList::merged(&lists, <$row>::key, keep, looks)?)
+        }};
+    }
+    Ok(Some(match &shares[0].rows {
+        Rows::Pairs(_) => one_list!(Pairs, TrianglePair),
+        Rows::Contacts(_) => one_list!(Contacts, Contact),
+        Rows::Near(_) => one_list!(Near, NearPair),
+        // Queries of bodies have one share.
+        Rows::Earliest(_) | Rows::Distance(_) | Rows::BodyPairs(_) | Rows::BodyDistances(_) => {
+            return Ok(None);
+        }
+    }))
 }

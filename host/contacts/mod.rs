@@ -33,7 +33,7 @@ pub use nearest::NearestTriangles;
 pub use notes::Note;
 pub use on_device::{DeviceAnswer, DeviceList, Entries};
 pub use pairs::{END_ERROR, PairGeometry, PairKind, Part};
-pub(crate) use rows::Row;
+pub(crate) use rows::{Keep, Row};
 pub use rows::RowList;
 pub use stats::Stats;
 pub(crate) use summary::Summary;

@@ -1,7 +1,9 @@
 //! Rows of an answer: the host's own, or those that a GPU has written in their final form.
 
-use super::{Closest, Contact, Kind, NearPair, Status, TrianglePair};
-use bytemuck::Pod;
+use super::{Closest, Contact, Kind, NearPair, Status, TrianglePair, sort};
+use crate::error::Error;
+use bytemuck::{Pod, cast_slice, cast_slice_mut};
+use nearmiss_emulator::Looks;
 use nearmiss_kernels::abi::rows::{ContactRow, NearRow, PairRow, code};
 use std::fmt;
 use std::mem::offset_of;
@@ -23,7 +25,11 @@ pub struct RowList<T> {
 }
 
 /// Memory that the device has copied rows into.
-type Bytes = dyn AsRef<[u8]> + Send + Sync;
+pub(crate) type Bytes = dyn AsRef<[u8]> + Send + Sync;
+
+/// Makes memory of so many bytes, which a function fills. `None` if that returns that it has not
+/// filled all.
+pub(crate) type Keep<'a> = &'a dyn Fn(usize, &dyn Fn(&mut [u8]) -> bool) -> Result<Option<Arc<Bytes>>, Error>;
 
 /// A row that the device writes.
 ///
@@ -32,7 +38,7 @@ type Bytes = dyn AsRef<[u8]> + Send + Sync;
 /// byte there. A value whose choices are valid is a value of this type. Alignment is at most 8.
 pub unsafe trait Row: Copy {
     /// The row, as the kernel writes it.
-    type Written: Pod;
+    type Written: Pod + Send + Sync;
     /// Whether all choices are valid.
     fn is_valid(written: &Self::Written) -> bool;
 }
@@ -106,9 +112,49 @@ impl<T> RowList<T> {
     where
         T: Row,
     {
-        let valid = || bytemuck::cast_slice::<u8, T::Written>((*kept).as_ref()).iter().all(T::is_valid);
+        let valid = || cast_slice::<u8, T::Written>((*kept).as_ref()).iter().all(T::is_valid);
         debug_assert!(valid(), "the device wrote a row with an unknown choice");
         RowList { own: Arc::default(), kept: Some(kept) }
+    }
+
+    /// Returns the rows as the device has written them; `None` if there are rows of the host's own.
+    fn as_written(&self) -> Option<&[T::Written]>
+    where
+        T: Row,
+    {
+        match &self.kept {
+            Some(kept) => Some(cast_slice((**kept).as_ref())),
+            None => self.own.is_empty().then_some(&[]),
+        }
+    }
+
+    /// Merges sorted lists whose keys are distinct. Rows that devices have written are merged on all
+    /// threads, into memory from `keep`.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] if `looks` ends the work; those of `keep`.
+    pub(crate) fn merged<K: Ord>(
+        lists: &[&RowList<T>],
+        key: impl Fn(&T) -> K + Sync,
+        keep: Keep,
+        looks: &Looks,
+    ) -> Result<RowList<T>, Error>
+    where
+        T: Row + Send,
+    {
+        // Lists of the host's own rows are those of a CPU, whose frames take much longer.
+        let Some(written) = lists.iter().map(|list| list.as_written()).collect::<Option<Vec<_>>>() else {
+            let mut rows: Vec<T> = lists.iter().flat_map(|list| list.iter().copied()).collect();
+            sort::sort_runs(&mut rows, key, looks);
+            return if looks.ended() { Err(Error::Interrupted) } else { Ok(rows.into()) };
+        };
+        // SAFETY: a row of a list has valid choices, so it is a value of `T`, and aligned to 8.
+        let key = |row: &T::Written| key(unsafe { &*(row as *const T::Written).cast() });
+        let fill = |to: &mut [u8]| sort::merge(&written, &key, looks, cast_slice_mut(to));
+        let bytes = written.iter().map(|list| size_of_val(*list)).sum();
+        let kept = keep(bytes, &fill)?.ok_or(Error::Interrupted)?;
+        // SAFETY: the rows are those of the lists.
+        Ok(unsafe { RowList::written(kept) })
     }
 
     /// Returns the rows, to be changed; copies them if they are the device's or shared.
@@ -224,6 +270,7 @@ impl<T: fmt::Debug> fmt::Debug for RowList<T> {
 mod tests {
     use super::*;
     use crate::scene::BodyId;
+    use nearmiss_emulator::Interrupt;
 
     /// Rows in memory of the device.
     struct Written(Vec<ContactRow>);
@@ -266,6 +313,38 @@ mod tests {
         assert_eq!((changed.len(), changed[0].toi, shared.len()), (1, 0.0, 2));
         assert!(shared == rows && changed != rows && written(&[]).is_empty());
         assert_eq!(rows.into_vec(), wanted);
+    }
+
+    #[test]
+    fn lists_become_one_whoever_has_written_them() {
+        let keep: Keep = &|bytes, fill| {
+            let mut rows = vec![row(0, 0); bytes / size_of::<ContactRow>()];
+            Ok(fill(cast_slice_mut(&mut rows)).then(|| Arc::new(Written(rows)) as Arc<Bytes>))
+        };
+        let all: Vec<ContactRow> =
+            (0..50_000).map(|n| ContactRow { features: [n / 3, n], ..row(0, 1) }).collect();
+        let part = |of: usize| -> Vec<_> { all.iter().skip(of).step_by(3).copied().collect() };
+        let by_device = [0, 1, 2].map(|of| written(&part(of)));
+        let by_host = by_device.each_ref().map(|list| list.to_vec().into());
+        let (none, whole): (RowList<Contact>, _) = (RowList::default(), written(&all));
+        let [one, two, three] = &by_device;
+        let [other, _, _] = &by_host;
+        let merged =
+            |lists: &[&RowList<Contact>], looks: &Looks| RowList::merged(lists, Contact::key, keep, looks);
+        for lists in [vec![one, two, three], vec![three, &none, two, one], vec![other, two, three]] {
+            let found = merged(&lists, &Looks::new(None)).expect("no interrupt");
+            assert!(
+                found == whole && found.kept.is_some() != std::ptr::eq(lists[0], other),
+                "{}",
+                lists.len()
+            );
+            let interrupt = Interrupt::new();
+            interrupt.trigger();
+            let ended = merged(&lists, &Looks::new(Some(&interrupt)));
+            assert!(matches!(ended, Err(Error::Interrupted)));
+        }
+        assert!(merged(&[one, two], &Looks::new(None)).expect("no interrupt") != whole, "a list is missing");
+        assert!(merged(&[&none, &none], &Looks::new(None)).expect("no interrupt").is_empty());
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::Detector;
 use super::frame::Answered;
 use super::question::Question;
-use crate::contacts::Contacts;
+use crate::contacts::{Contacts, Keep};
 use crate::error::Error;
 use crate::pipeline::collect::collect;
 use crate::pipeline::{Layout, Share};
@@ -69,13 +69,13 @@ impl Detector {
                 self.portion.add_work(pipeline.work(at)?);
             }
         }
-        let whole = Contacts::merged(all, |a, b| a + b, &looks);
+        let keep: Keep = &|bytes, fill| device.keep_filled(bytes, fill);
+        let merged = Contacts::merged(all, |a, b| a + b, keep, &looks);
+        let mut contacts = merged.map_err(Stopped::Host)?;
         if looks.ended() {
             return Err(Stopped::Host(Error::Interrupted));
         }
-        Ok(whole.map(|mut contacts| {
-            contacts.stats.slices = slices;
-            Answered { contacts, seen }
-        }))
+        contacts.stats.slices = slices;
+        Ok(Some(Answered { contacts, seen }))
     }
 }

@@ -1,7 +1,7 @@
 //! Calls of several devices that end early.
 
 use super::MultiDetector;
-use crate::contacts::Contacts;
+use crate::contacts::{Contacts, Keep};
 use crate::device::Interrupt;
 use crate::device::emulator::Looks;
 use crate::error::Error;
@@ -32,10 +32,7 @@ impl MultiDetector {
     /// [`Error::Interrupted`].
     pub(super) fn merged(&self, answers: Vec<Contacts>) -> Result<Contacts, Error> {
         let looks = Looks::new(Some(&self.interrupt));
-        let whole = Contacts::merged(answers, f64::max, &looks);
-        if looks.ended() {
-            return Err(Error::Interrupted);
-        }
-        whole.ok_or_else(|| Error::Bug { what: "a scene on no device".into() })
+        let keep: Keep = &|bytes, fill| self.parts[0].device().keep_filled(bytes, fill);
+        Contacts::merged(answers, f64::max, keep, &looks)
     }
 }

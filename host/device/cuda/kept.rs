@@ -124,6 +124,20 @@ impl Blocks {
         Ok(())
     }
 
+    /// A block without another holder, for the host to write; nothing if there is no memory for it.
+    pub fn room(&mut self, gpu: &Bound, stream: &Stream, bytes: usize) -> Result<Option<Arc<Locked>>, Error> {
+        let found = self.take(gpu, stream, bytes)?;
+        // A copy that failed may still be in progress.
+        stream.wait(gpu).map_err(refused("waiting for copies"))?;
+        Ok(found)
+    }
+
+    /// The first bytes of a block, which the host has written.
+    pub fn keep_written(&mut self, memory: Arc<Locked>, bytes: usize) -> Kept {
+        self.blocks.push(memory.clone());
+        Kept { memory, bytes }
+    }
+
     /// The first bytes of a buffer, and how many of them had to be copied: none if they were read
     /// ahead in this epoch. Nothing if there is no memory for them.
     pub fn keep(

@@ -5,6 +5,7 @@ use super::memory::Memory;
 use super::staging::Known;
 use super::{Cuda, locked, refused};
 use crate::error::Error;
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 /// The first bytes of a buffer, to be read ahead.
@@ -73,5 +74,20 @@ impl Cuda {
     pub fn keep(&self, memory: &Memory, bytes: usize) -> Result<(Option<Kept>, usize), Error> {
         let epoch = self.epoch.load(Ordering::Relaxed);
         locked(&self.blocks).keep(&self.bind()?, &self.stream, epoch, (memory, bytes))
+    }
+
+    /// Bytes that the host writes by `fill`, kept as those of [`Cuda::keep`], and what `fill` returns.
+    /// Nothing if there is no page-locked memory for them.
+    pub fn keep_filled(
+        &self,
+        bytes: usize,
+        fill: &dyn Fn(&mut [u8]) -> bool,
+    ) -> Result<Option<(Kept, bool)>, Error> {
+        let Some(mut memory) = locked(&self.blocks).room(&self.bind()?, &self.stream, bytes)? else {
+            return Ok(None);
+        };
+        let shared = || Error::Bug { what: "a new answer is in memory of another".into() };
+        let is_whole = fill(Arc::get_mut(&mut memory).ok_or_else(shared)?.piece_mut(0, bytes));
+        Ok(Some((locked(&self.blocks).keep_written(memory, bytes), is_whole)))
     }
 }

@@ -1,11 +1,13 @@
 //! Bytes of a device's memory that the host keeps: in page-locked memory that the GPU copied them
 //! into, without another copy.
 
+use crate::device::Device;
 use crate::device::buffer::{Buffer, Memory};
 #[cfg(feature = "cuda")]
 use crate::device::{Machine, cuda};
 use crate::error::Error;
 use bytemuck::Pod;
+use std::sync::Arc;
 
 /// Bytes that the host keeps, aligned to 8 bytes. They need neither buffer nor detector. When they
 /// are dropped, later answers use the same memory.
@@ -40,6 +42,33 @@ impl Kept {
         let mut words = vec![0u64; bytes.div_ceil(size_of::<u64>())];
         read(&mut bytemuck::cast_slice_mut(&mut words)[..bytes])?;
         Ok(Kept(Bytes::Own(words, bytes)))
+    }
+}
+
+impl Device {
+    /// Makes memory that `fill` writes, of earlier answers if there is some; the host keeps it. `None`
+    /// if `fill` returns that it has not written all.
+    ///
+    /// # Errors
+    /// [`Error::Device`] of work that failed before.
+    pub(crate) fn keep_filled(
+        &self,
+        bytes: usize,
+        fill: &dyn Fn(&mut [u8]) -> bool,
+    ) -> Result<Option<Arc<dyn AsRef<[u8]> + Send + Sync>>, Error> {
+        #[cfg(feature = "cuda")]
+        if let Machine::Cuda(c) = &*self.machine
+            && bytes > 0
+            && let Some((kept, is_whole)) = c.keep_filled(bytes, fill)?
+        {
+            return Ok(is_whole.then(|| Arc::new(Kept(Bytes::Locked(kept))) as _));
+        }
+        let mut is_whole = false;
+        let kept = Kept::copied(bytes, |to| {
+            is_whole = fill(to);
+            Ok::<_, Error>(())
+        })?;
+        Ok(is_whole.then(|| Arc::new(kept) as _))
     }
 }
 
@@ -96,7 +125,7 @@ impl<T: Pod> Buffer<T> {
 
 #[cfg(test)]
 mod tests {
-    use crate::device::Device;
+    use super::*;
     use crate::device::emulator::{Emulator, Mode};
 
     #[test]
@@ -108,5 +137,21 @@ mod tests {
         drop(buffer);
         let there = kept.each_ref().map(|kept| bytemuck::cast_slice::<u8, u32>(kept.bytes()));
         assert_eq!(there, [&[][..], &[1, 2, 3], &[1, 2, 3, 4, 5, 6]]);
+    }
+
+    #[test]
+    fn the_host_fills_bytes_and_keeps_them() {
+        let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
+        let filled = |bytes, is_whole| {
+            let fill = |to: &mut [u8]| {
+                to.fill(7);
+                is_whole
+            };
+            device.keep_filled(bytes, &fill).expect("no machine fails")
+        };
+        for bytes in [0, 1, 20] {
+            assert_eq!((*filled(bytes, true).expect("all")).as_ref(), vec![7; bytes]);
+            assert!(filled(bytes, false).is_none());
+        }
     }
 }

@@ -2,7 +2,7 @@
 //! though only a GPU orders by default.
 
 use super::*;
-use crate::contacts::{Contacts, Kind, NearPair, Rows};
+use crate::contacts::{Contacts, Keep, Kind, NearPair, Rows};
 use crate::device::emulator::{Emulator, Looks, Mode};
 use crate::pipeline::Layout;
 use crate::pipeline::collect::collect;
@@ -70,7 +70,8 @@ fn ordered_slices_become_one_answer() {
     let whole = slice(Share::WHOLE);
     let slices = [0, 1].map(|at| slice(Share::WHOLE.slice(at, 2)));
     assert!(slices.iter().all(|slice| !slice.is_empty() && slice.len() < whole.len()));
-    let merged = Contacts::merged(slices.into(), |a, b| a + b, &looks).expect("slices");
+    let keep: Keep = &|bytes, fill| device.keep_filled(bytes, fill);
+    let merged = Contacts::merged(slices.into(), |a, b| a + b, keep, &looks).expect("slices");
     assert_eq!((merged.rows.clone(), merged.hash()), (whole.rows.clone(), whole.hash()));
 }
 

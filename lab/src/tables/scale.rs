@@ -3,7 +3,6 @@
 use super::text::{Printed, digits};
 use crate::OneQueryOnSeveral;
 use crate::scene;
-use nearmiss::Contacts;
 use nearmiss::Stages;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
@@ -87,22 +86,22 @@ pub fn scale(
                 for _ in 0..WARM_UP {
                     detector.detect()?;
                 }
-                let mut waits = Vec::new();
-                let found: Vec<Contacts> = (0..frames)
-                    .map(|_| {
-                        let start = Instant::now();
-                        let found = detector.detect();
-                        waits.push(start.elapsed().as_secs_f64() * 1e3);
-                        found
-                    })
-                    .collect::<Result<_, _>>()?;
-                waits.sort_by(f64::total_cmp);
-                let Some(last) = found.last() else { return Ok(()) };
-                let of = |stage: fn(&Stages) -> f64| {
-                    let mut ms: Vec<f64> = found.iter().map(|found| stage(&found.stats.stages)).collect();
+                let (mut waits, mut stages, mut last) = (Vec::new(), Vec::new(), None);
+                for _ in 0..frames {
+                    // A caller who keeps the last answer alone: its memory is used again.
+                    drop(last.take());
+                    let start = Instant::now();
+                    let found = detector.detect()?;
+                    waits.push(start.elapsed().as_secs_f64() * 1e3);
+                    stages.push(found.stats.stages);
+                    last = Some(found);
+                }
+                let Some(last) = last else { return Ok(()) };
+                let median = |mut ms: Vec<f64>| {
                     ms.sort_by(f64::total_cmp);
                     ms[ms.len() / 2]
                 };
+                let of = |stage: fn(&Stages) -> f64| median(stages.iter().map(stage).collect());
                 let frame_ms = of(|s| s.total);
                 let (motion, triangles) = (query.kind(), body.face_count());
                 let hash = format!("{:016x}", last.hash());
@@ -130,7 +129,7 @@ pub fn scale(
                     traverse_ms: of(|s| s.traverse),
                     narrow_ms: of(|s| s.narrow),
                     frame_ms,
-                    wait_ms: (!in_turn || count == 1).then(|| waits[waits.len() / 2]),
+                    wait_ms: (!in_turn || count == 1).then(|| median(waits)),
                     speedup: of_one.as_ref().map(|one| one.frame_ms / frame_ms),
                     exponent,
                     bytes: held().sum::<u64>() - others,
