@@ -5,9 +5,10 @@ mod edits;
 mod first;
 mod interrupted;
 mod left_out;
+mod lent;
 mod tiles;
 
-use crate::contacts::{Answer, Contacts, Located};
+use crate::contacts::{Answer, Contacts, Located, Note};
 use crate::detector::Detector;
 use crate::device::{Device, Interrupt};
 use crate::error::Error;
@@ -16,6 +17,7 @@ use crate::pipeline::wear::Wear;
 use crate::query::{BroadPhase, Query, Rebuild, TypedQuery};
 use crate::scene::{BodyId, Motion, Scene};
 use cuts::cuts;
+use lent::Copies;
 use std::time::Instant;
 
 /// A frame is uneven if the slowest share takes more than this many times the mean. The next frame
@@ -46,6 +48,7 @@ pub struct MultiDetector {
     /// Builds of each device when all had the same tiles.
     agreed: Vec<u64>,
     in_turn: bool,
+    copies: Vec<Copies>,
     /// Handle that ends the work of all devices.
     interrupt: Interrupt,
 }
@@ -102,7 +105,14 @@ impl MultiDetector {
             Detector::with_share(device, scene.clone(), Share::WHOLE).map(Detector::of_several)
         };
         let parts = devices.into_iter().map(part).collect::<Result<Vec<_>, _>>()?;
-        Ok(MultiDetector { agreed: vec![0; parts.len()], parts, divisions: Vec::new(), in_turn, interrupt })
+        Ok(MultiDetector {
+            agreed: vec![0; parts.len()],
+            parts,
+            divisions: Vec::new(),
+            in_turn,
+            copies: Vec::new(),
+            interrupt,
+        })
     }
 
     /// Returns the query as each device runs it: by tiles, which are built on all devices together,
@@ -128,23 +138,28 @@ impl MultiDetector {
         MultiDetector { in_turn: true, ..self }
     }
 
-    /// As [`Detector::update`].
+    /// As [`Detector::update`]. Positions may be in the memory of any of the devices, behind the work
+    /// of its stream; the other devices get copies. Then all have read them when the call returns.
     ///
     /// # Errors
-    /// As there; [`Error::InvalidArgument`] for positions in the memory of one device.
+    /// As there; [`Error::InvalidArgument`] for positions in memory of a GPU that is none of these
+    /// devices, and if a device is a CPU.
     pub fn update(&mut self, motions: &[(BodyId, Motion)]) -> Result<(), Error> {
         self.updated(motions, None)
     }
 
     fn updated(&mut self, motions: &[(BodyId, Motion)], query: Option<&Query>) -> Result<(), Error> {
-        if let Some((id, _)) = motions.iter().find(|(_, input)| matches!(input, Motion::OnDevice(_))) {
-            return Err(Error::InvalidArgument {
-                what: format!("positions of body {id} in the memory of one device, for several"),
-                advice: "give positions in host memory".into(),
-            });
-        }
         let is_first = self.parts[0].is_first_of(motions);
-        let updated = self.each(|detector| detector.apply(motions, query)).map(drop);
+        let updated = self.lent(motions).and_then(|lent| {
+            self.each_numbered(|part, detector| detector.apply(&lent[part], query)).map(drop)
+        });
+        let updated = if motions.iter().any(|(_, input)| matches!(input, Motion::OnDevice(_))) {
+            // The caller may write them again.
+            let read = self.each(|detector| detector.device().wait());
+            updated.and(read.map(drop))
+        } else {
+            updated
+        };
         if is_first && updated.is_ok() {
             // All devices build their tiles after the first update of a body.
             self.divisions.iter_mut().for_each(|division| division.wear.add_new_place());
@@ -202,6 +217,19 @@ impl MultiDetector {
         let query = self.divisible(found.query)?;
         let geometry = self.parts[0].geometry_by(found, &query);
         self.ended(geometry)
+    }
+
+    /// As [`Detector::download_positions`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn download_positions(&mut self) -> Result<(), Error> {
+        self.parts[0].download_positions()
+    }
+
+    /// As [`Detector::notes`].
+    pub fn notes(&self, contacts: &Contacts) -> Vec<Note> {
+        self.parts[0].notes(contacts)
     }
 
     /// As [`Detector::scene`].
@@ -278,14 +306,24 @@ impl MultiDetector {
         &mut self,
         what: impl Fn(&mut Detector) -> Result<T, Error> + Sync,
     ) -> Result<Vec<T>, Error> {
-        if self.in_turn || self.parts.len() == 1 {
-            let done: Vec<_> = self.parts.iter_mut().map(what).collect();
+        self.each_numbered(|_, part| what(part))
+    }
+
+    /// As [`MultiDetector::each`], with the number of the device.
+    fn each_numbered<T: Send>(
+        &mut self,
+        what: impl Fn(usize, &mut Detector) -> Result<T, Error> + Sync,
+    ) -> Result<Vec<T>, Error> {
+        let parts = self.parts.iter_mut().enumerate();
+        if self.in_turn || parts.len() == 1 {
+            let done: Vec<_> = parts.map(|(number, part)| what(number, part)).collect();
             return done.into_iter().collect();
         }
         let lost = |_| Err(Error::Bug { what: "a device's thread has panicked".into() });
         std::thread::scope(|scope| {
             let what = &what;
-            let threads: Vec<_> = self.parts.iter_mut().map(|part| scope.spawn(move || what(part))).collect();
+            let threads: Vec<_> =
+                parts.map(|(number, part)| scope.spawn(move || what(number, part))).collect();
             let done: Vec<_> = threads.into_iter().map(|thread| thread.join().unwrap_or_else(lost)).collect();
             done.into_iter().collect()
         })

@@ -9,6 +9,7 @@ mod held;
 mod interrupt;
 mod ledger;
 mod marks;
+mod peers;
 mod replay;
 mod shared;
 mod usage;

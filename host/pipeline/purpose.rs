@@ -12,6 +12,8 @@ pub const FACES: &str = "vertices of each triangle";
 pub const REST: &str = "vertices of rigid bodies without a pose";
 /// Vertices that came from the host.
 pub const UPLOADED: &str = "vertices of deformable bodies, uploaded";
+/// Positions in the memory of another GPU.
+pub const COPIES: &str = "positions from the memory of another GPU";
 /// Poses of rigid bodies.
 pub const POSES: &str = "poses of rigid bodies";
 /// Meshes of instances: tiles, triangles, vertices.

@@ -65,6 +65,21 @@ impl DeviceRows {
         Ok(DeviceRows { address, rows, stride, number })
     }
 
+    /// Address of the first row.
+    pub(crate) fn address(&self) -> u64 {
+        self.address
+    }
+
+    /// Bytes from the first number to the last, of rows of `width` numbers; 0 without rows.
+    pub(crate) fn span(&self, width: usize) -> usize {
+        self.rows.checked_sub(1).map_or(0, |last| last * self.stride + width * self.number.bytes())
+    }
+
+    /// The same rows, copied to another address.
+    pub(crate) fn copied_to(self, address: u64) -> DeviceRows {
+        DeviceRows { address, ..self }
+    }
+
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.rows
@@ -152,6 +167,12 @@ pub struct DevicePose {
     pub rotation: DeviceRows,
 }
 
+impl DevicePose {
+    fn rows_mut(&mut self) -> [(&mut DeviceRows, usize); 2] {
+        [(&mut self.translation, 3), (&mut self.rotation, 4)]
+    }
+}
+
 /// Motion of a body in device memory. It does not pass through the host. The device's stream reads
 /// it, after all work that was put there before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -172,6 +193,16 @@ impl DeviceMotion {
     /// Whether it has two ends.
     pub(crate) fn is_moving(&self) -> bool {
         matches!(self, DeviceMotion::Step(_) | DeviceMotion::PoseStep(_))
+    }
+
+    /// All of its rows, with the numbers a row.
+    pub(crate) fn rows_mut(&mut self) -> Vec<(&mut DeviceRows, usize)> {
+        match self {
+            DeviceMotion::Positions(rows) => vec![(rows, 3)],
+            DeviceMotion::Step(both) => both.iter_mut().map(|rows| (rows, 3)).collect(),
+            DeviceMotion::Pose(one) => one.rows_mut().into(),
+            DeviceMotion::PoseStep(both) => both.iter_mut().flat_map(DevicePose::rows_mut).collect(),
+        }
     }
 
     /// Whether any of its positions are in f64.
@@ -247,10 +278,19 @@ mod tests {
         let record = Lent { address: 64, numbers: 19, stride: 4, is_f64: 1, pad: 0 };
         assert_eq!(DeviceMotion::Positions(at).records(2), [record, record]);
         assert!(DeviceMotion::Positions(at).has_f64() && !DeviceMotion::Positions(at).is_moving());
+        assert_eq!((at.span(3), at.span(4), at.address()), (4 * 32 + 24, 4 * 32 + 32, 64));
         let none = rows(64, 0, 32, Number::F32).expect("no rows");
+        assert_eq!(none.span(3), 0);
         assert_eq!(none.record(3).numbers, 3);
         let [translation, rotation] = [1024, 2048].map(|at| rows(at, 1, 0, Number::F32).expect("a row"));
         let pose = DeviceMotion::PoseStep([DevicePose { translation, rotation }; 2]);
+        let mut other = pose;
+        for (rows, width) in other.rows_mut() {
+            *rows = rows.copied_to(rows.address() + width as u64);
+        }
+        let addresses =
+            |motion: &DeviceMotion| motion.records(2).iter().map(|r| r.address).collect::<Vec<_>>();
+        assert_eq!(addresses(&other), [1027, 2052, 1027, 2052]);
         assert_eq!(
             pose.records(2).iter().map(|r| (r.address, r.numbers)).collect::<Vec<_>>(),
             [(1024, 3), (2048, 4), (1024, 3), (2048, 4)]

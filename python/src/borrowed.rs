@@ -3,8 +3,8 @@
 use crate::dlpack::{CPU, CUDA, CUDA_MANAGED, Dtype, FLOAT, Place, Shape, Taken, packed};
 use crate::errors::{choice, raised};
 use crate::host::are_floats;
-use nearmiss::Device;
 use nearmiss::scene::{DeviceRows, Number};
+use nearmiss::{Device, Error};
 use numpy::npyffi::_PyArray_GET_ITEM_DATA;
 use numpy::{PyArrayDescrMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -36,6 +36,17 @@ pub fn is_on_gpu(object: &Bound<'_, PyAny>) -> bool {
         return [CUDA, CUDA_MANAGED].contains(&place.0);
     }
     object.hasattr("__cuda_array_interface__").unwrap_or(false)
+}
+
+/// The device that has an array, of several; the first if none has.
+pub fn holder<'a>(object: &Bound<'_, PyAny>, devices: &[&'a Device]) -> PyResult<&'a Device> {
+    let on = match object.hasattr("__dlpack_device__")? {
+        true => Some(object.call_method0("__dlpack_device__")?.extract::<(i32, i32)>()?.1),
+        false => None,
+    };
+    let has = |device: &&&Device| on.is_some() && device.ordinal().map(|ordinal| ordinal as i32) == on;
+    let found = devices.iter().find(has).or(devices.first());
+    found.copied().ok_or_else(|| raised(Error::Bug { what: "arrays for no device".into() }))
 }
 
 /// Rows of `width` numbers in a GPU's memory, behind all work that makes them.

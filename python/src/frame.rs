@@ -1,6 +1,6 @@
 //! Motions of bodies, as Python gives them.
 
-use crate::borrowed::{BorrowedRows, Held, is_on_gpu, on_cpu, on_gpu};
+use crate::borrowed::{BorrowedRows, Held, holder, is_on_gpu, on_cpu, on_gpu};
 use crate::errors::choice;
 use crate::host::{Most, positions};
 use crate::key::{Key, bodies};
@@ -44,15 +44,21 @@ impl Named {
     }
 }
 
-/// The device that reads a frame.
+/// The devices that read a frame, at least one.
 #[derive(Clone, Copy)]
 pub struct Reader<'a> {
-    pub device: &'a Device,
-    /// Whether it reads arrays of numpy in place. Several devices each have a copy.
+    pub devices: &'a [&'a Device],
+    /// Whether they read arrays of numpy in place. Several devices each have a copy.
     pub in_place: bool,
 }
 
-/// Owner of positions: its device, its name in messages, its number of vertices, and whether it takes
+impl Reader<'_> {
+    fn is_gpu(&self) -> bool {
+        self.devices.iter().any(|device| device.is_gpu())
+    }
+}
+
+/// Owner of positions: its devices, its name in messages, its number of vertices, and whether it takes
 /// poses.
 #[derive(Clone, Copy)]
 struct Of<'a> {
@@ -110,7 +116,7 @@ impl Frame {
     }
 
     fn given(&mut self, input: &Bound<'_, PyAny>, of: Of<'_>) -> PyResult<Given> {
-        let Of { reader: Reader { device, .. }, what, most, .. } = of;
+        let Of { reader, what, most, .. } = of;
         if let Ok(list) = input.cast::<PyList>()
             && list.iter().any(|end| end.is_instance_of::<Pose>())
         {
@@ -123,7 +129,7 @@ impl Frame {
             if let Some(step) = step.get().on_host() {
                 return Ok(Given::Known(Motion::PoseStep(step)));
             }
-            let [a, b] = step.get().ends().map(|end| end.get().given(input.py(), device));
+            let [a, b] = step.get().ends().map(|end| end.get().given(input.py(), reader.devices));
             return self.step([a?, b?], what);
         }
         let both = input.cast::<PyTuple>().ok().filter(|both| both.len() == 2);
@@ -139,7 +145,7 @@ impl Frame {
                     Ok(Given::Known(Motion::OnDevice(DeviceMotion::Step([a.rows, b.rows]))))
                 }
                 // One of them is not laid out as it would have to be.
-                _ if !device.is_gpu() => {
+                _ if !reader.is_gpu() => {
                     Ok(Given::Step([positions(&ends[0], what, most)?, positions(&ends[1], what, most)?]))
                 }
                 _ => Err(halves(what)),
@@ -179,7 +185,7 @@ impl Frame {
 /// A pose, or the pose of a matrix for a rigid body; `None` for other inputs.
 fn pose(object: &Bound<'_, PyAny>, of: Of<'_>) -> PyResult<Option<GivenPose>> {
     if let Ok(pose) = object.cast::<Pose>() {
-        return pose.get().given(object.py(), of.reader.device).map(Some);
+        return pose.get().given(object.py(), of.reader.devices).map(Some);
     }
     match (of.is_rigid, is_on_gpu(object)) {
         (false, _) => Ok(None),
@@ -194,12 +200,11 @@ fn pose(object: &Bound<'_, PyAny>, of: Of<'_>) -> PyResult<Option<GivenPose>> {
 
 /// One end: read where it lies if the device reaches it there, else copied.
 fn end(object: &Bound<'_, PyAny>, Of { reader, what, most, .. }: Of<'_>) -> PyResult<End> {
-    let Reader { device, in_place } = reader;
     if is_on_gpu(object) {
-        return on_gpu(object, device, (3, what)).map(End::Borrowed);
+        return on_gpu(object, holder(object, reader.devices)?, (3, what)).map(End::Borrowed);
     }
-    if in_place
-        && !device.is_gpu()
+    if reader.in_place
+        && !reader.is_gpu()
         && let Some(rows) = on_cpu(object, what)?
     {
         return Ok(End::Borrowed(rows));

@@ -1,6 +1,6 @@
 //! Poses of rigid bodies.
 
-use crate::borrowed::{Held, is_on_gpu, on_gpu};
+use crate::borrowed::{Held, holder, is_on_gpu, on_gpu};
 use crate::errors::{choice, raised};
 use crate::host::{points, row, rows};
 use crate::matrix::pose_of;
@@ -166,12 +166,12 @@ impl Pose {
         Ok(Pose { rotation, translation, known: Some(pose) })
     }
 
-    pub fn given(&self, py: Python<'_>, device: &Device) -> PyResult<GivenPose> {
+    pub fn given(&self, py: Python<'_>, devices: &[&Device]) -> PyResult<GivenPose> {
         if let Some(pose) = self.known {
             return Ok(GivenPose::Known(pose));
         }
         let one_row = |of: &Py<PyAny>, width: i64, what: &str| {
-            let rows = on_gpu(of.bind(py), device, (width, what))?;
+            let rows = on_gpu(of.bind(py), holder(of.bind(py), devices)?, (width, what))?;
             match rows.rows.len() {
                 1 => Ok(rows),
                 rows => Err(choice(

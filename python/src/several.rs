@@ -4,7 +4,7 @@ use crate::answer::{Answer, typed};
 use crate::asked::{Current, Does};
 use crate::detector::Answered;
 use crate::device::Device;
-use crate::errors::{choice, raised};
+use crate::errors::raised;
 use crate::exclusions;
 use crate::frame::{Frame, Named, Reader, keyed};
 use crate::geometry;
@@ -16,7 +16,7 @@ use crate::scene::{Body, scene_of};
 use crate::thickness::thickness_of;
 use crate::turns::python;
 use crate::watch::{self, Watch, watched};
-use nearmiss::scene::{BodyId, Motion};
+use nearmiss::scene::BodyId;
 use nearmiss::words::counted;
 use nearmiss::{Error, Interrupt};
 use pyo3::prelude::*;
@@ -30,8 +30,8 @@ use std::sync::{Mutex, MutexGuard};
 /// - `scene`: a Scene, or one Body, whose number is then 0.
 /// - `devices`: at least one Device, such as [Device(gpu=0), Device(gpu=1)].
 ///
-/// Takes Discrete, Continuous, Earliest and Near. Positions are in host memory: each device gets a
-/// copy. There are no submissions. Raises InvalidArgumentError without devices.
+/// Takes Discrete, Continuous, Earliest and Near. Each device has a copy of positions. There are no
+/// submissions. Raises InvalidArgumentError without devices.
 #[pyclass(module = "nearmiss", frozen)]
 pub struct MultiDetector {
     one: Mutex<Several>,
@@ -98,16 +98,8 @@ impl MultiDetector {
     fn frame_of(&self, py: Python<'_>, inputs: &Bound<'_, PyAny>) -> PyResult<Frame> {
         let (keys, places): (Vec<_>, Vec<_>) = keyed(inputs)?.into_iter().unzip();
         let named = self.look(py, |detector| Named::all(detector.scene(), &keys))?.map_err(raised)?;
-        let reader = Reader { device: &self.devices[0].get().device, in_place: false };
-        let frame = Frame::of(named.into_iter().zip(places).collect(), reader)?;
-        let inputs = frame.inputs();
-        match inputs.iter().find(|(_, input)| matches!(input, Motion::OnDevice(_))) {
-            None => Ok(frame),
-            Some((id, _)) => Err(choice(
-                format!("positions of body {id} in the memory of one device, for several"),
-                "give numpy arrays, or poses of numbers",
-            )),
-        }
+        let devices: Vec<_> = self.devices.iter().map(|device| &device.get().device).collect();
+        Frame::of(named.into_iter().zip(places).collect(), Reader { devices: &devices, in_place: false })
     }
 
     fn body(&self, py: Python<'_>, body: Key) -> PyResult<BodyId> {
@@ -137,8 +129,11 @@ impl MultiDetector {
 
     /// Move bodies for the next queries: see Detector.update for the arguments.
     ///
-    /// Raises as Detector.update does, and InvalidArgumentError for arrays of a GPU: then nothing has
-    /// moved.
+    /// Arrays may be on any of the GPUs; the others get copies. All have read them when the call
+    /// returns.
+    ///
+    /// Raises as Detector.update does, and InvalidArgumentError for arrays of another GPU, or of a GPU if
+    /// a device is a CPU: then nothing has moved.
     fn update(&self, py: Python<'_>, inputs: &Bound<'_, PyAny>) -> PyResult<()> {
         let frame = self.frame_of(py, inputs)?;
         let given = frame.inputs();

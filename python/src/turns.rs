@@ -130,7 +130,7 @@ impl Detector {
     pub fn frame_of(&self, py: Python<'_>, inputs: &Bound<'_, PyAny>) -> PyResult<Frame> {
         let (keys, places): (Vec<_>, Vec<_>) = keyed(inputs)?.into_iter().unzip();
         let named = self.look(py, |detector| Named::all(detector.scene(), &keys))?;
-        let reader = Reader { device: &self.device.get().device, in_place: true };
+        let reader = Reader { devices: &[&self.device.get().device], in_place: true };
         Frame::of(named.map_err(raised)?.into_iter().zip(places).collect(), reader)
     }
 

@@ -377,3 +377,31 @@ def test_the_cloth_of_the_book(stream):
     for _ in range(15):
         assert on_cpu.frame()[1] == again.frame()[1] == 0
     assert torch.allclose(on_cpu.x, again.x.cpu(), atol=1e-9)
+
+
+@pytest.mark.skipif(torch.cuda.device_count() < 2, reason="one GPU")
+def test_arrays_of_one_gpu_are_read_by_all():
+    from test_several import QUERIES, scene
+
+    all, steps = scene()
+    one = nm.Detector(scene()[0], device=nm.Device("cpu"))
+    one.update(steps)
+    several = nm.MultiDetector(all, [nm.Device(gpu=gpu) for gpu in range(2)])
+    for gpu in range(2):
+        arrays = dict(steps)
+        for body in range(2):
+            arrays[body] = tuple(torch.tensor(end, device=f"cuda:{gpu}") for end in steps[body])
+        several.update({body: step[0] if body < 2 else step for body, step in steps.items()})
+        several.update(arrays)
+        # They were read.
+        for body in range(2):
+            arrays[body][1].fill_(float("nan"))
+        for query in QUERIES:
+            assert several.query(query).hash == one.query(query).hash, (gpu, query)
+        with pytest.raises(nm.InputError):
+            several.update(arrays)
+            several.query(QUERIES[2])
+    mixed = nm.MultiDetector(scene()[0], [nm.Device(gpu=0), nm.Device("cpu")])
+    arrays[0] = tuple(torch.tensor(end, device="cuda:0") for end in steps[0])
+    with pytest.raises(nm.InvalidArgumentError, match="a GPU and a CPU"):
+        mixed.update({0: arrays[0]})

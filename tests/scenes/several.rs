@@ -1,9 +1,9 @@
 //! A scene that is divided among devices: the answer of one, to the bit, however it is divided.
 
-use nearmiss::mesh::Body;
+use nearmiss::mesh::{Body, Positions};
 use nearmiss::query::{Query, QueryKind};
 use nearmiss::research::{BoundingVolume, BroadPhase, QueryExt};
-use nearmiss::scene::{BodyId, CollisionFilter, Motion, Scene};
+use nearmiss::scene::{BodyId, CollisionFilter, DeviceMotion, DeviceRows, Motion, Number, Scene};
 use nearmiss::{Contacts, Device};
 use nearmiss_lab::scene::{self, Bodies};
 use nearmiss_lab::{OneQuery, OneQueryOnSeveral};
@@ -179,4 +179,47 @@ fn tiles_at_the_cut_are_counted() {
     assert!(two[0] > 0 && two[1] == 0 && four[3] == 0, "{two:?} {four:?}");
     let tiles = body.face_count() as u64 / 32;
     assert!(four.iter().sum::<u64>() < tiles / 2 && two[0] < tiles / 4, "{two:?} {four:?} of {tiles}");
+}
+
+/// Positions of both ends in memory that a device reads.
+fn lent(ends: [&Positions; 2]) -> Motion<'static> {
+    let rows = |end: &Positions| {
+        let (address, number) = match end {
+            Positions::F32(points) => (points.as_ptr() as u64, Number::F32),
+            Positions::F64(points) => (points.as_ptr() as u64, Number::F64),
+        };
+        // SAFETY: a CPU reads it, and the tests keep it.
+        unsafe { DeviceRows::new(address, end.len(), 3 * number.bytes(), number) }.expect("rows")
+    };
+    Motion::OnDevice(DeviceMotion::Step(ends.map(rows)))
+}
+
+#[test]
+fn positions_in_memory_of_a_device_are_read_by_all() {
+    let body = scene::soup(400, 5, true).expect("a soup").with_filter(CollisionFilter::with_self_collision());
+    let mut one = nearmiss::Detector::new(engine(), body.clone()).expect("a detector");
+    let mut several = nearmiss::MultiDetector::new(devices(3), body.clone()).expect("detectors");
+    let id = several.scene().ids().next().expect("a body");
+    let [t0, t1] = body.ends();
+    for shift in [0.0, 0.02] {
+        let moved: Vec<[f64; 3]> = t1.to_f64().iter().map(|&[x, y, z]| [x + shift, y, z]).collect();
+        let mut moved = Positions::F64(moved);
+        one.update(&[(id, Motion::step(&t0.to_f64(), &moved))]).expect("moved");
+        several.update(&[(id, lent([t0, &moved]))]).expect("moved");
+        // It was read.
+        moved = Positions::F64(vec![[f64::NAN; 3]; moved.len()]);
+        for query in queries() {
+            let (want, found) =
+                (one.query(&query).expect("an answer"), several.query(&query).expect("an answer"));
+            is_the_same(&want, &found, &format!("{query:?}, {shift}"));
+            assert!(!want.is_empty());
+        }
+        several.download_positions().expect("there");
+        let at = several.scene().get(id).expect("a body").ends()[1].to_f64();
+        assert_eq!(at, one.scene().get(id).expect("a body").ends()[1].to_f64());
+        let before = several.query(&Query::near(0.01)).expect("an answer").hash();
+        let refused = several.update(&[(id, lent([t0, &moved]))]).expect_err("no numbers");
+        assert!(matches!(refused, nearmiss::Error::Input { .. }), "{refused}");
+        assert_eq!(several.query(&Query::near(0.01)).expect("an answer").hash(), before, "nothing has moved");
+    }
 }

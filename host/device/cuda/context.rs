@@ -122,6 +122,11 @@ unsafe impl Send for Context {}
 unsafe impl Sync for Context {}
 
 impl Context {
+    /// The driver's handle.
+    pub fn handle(&self) -> CUcontext {
+        self.handle
+    }
+
     /// The GPU's number.
     pub fn ordinal(&self) -> u32 {
         self.gpu.device as u32

@@ -6,7 +6,7 @@
 
 use super::types::{
     self, CUcontext, CUdevice, CUdevice_attribute, CUdeviceptr, CUevent, CUfunction, CUgraph, CUgraphExec,
-    CUjit_option, CUmodule, CUstream, CUstreamCaptureMode, CUstreamCaptureStatus,
+    CUjit_option, CUmodule, CUpointer_attribute, CUstream, CUstreamCaptureMode, CUstreamCaptureStatus,
 };
 use crate::error::Error;
 use libloading::Library;
@@ -169,6 +169,8 @@ functions! {
         cuMemcpyHtoDAsync_v2(CUdeviceptr, *const c_void, usize, CUstream);
         cuMemcpyDtoHAsync_v2(*mut c_void, CUdeviceptr, usize, CUstream);
         cuMemcpyDtoH_v2(*mut c_void, CUdeviceptr, usize);
+        cuMemcpyPeerAsync(CUdeviceptr, CUcontext, CUdeviceptr, CUcontext, usize, CUstream);
+        cuPointerGetAttribute(*mut c_void, CUpointer_attribute, CUdeviceptr);
     }
     // In cudarc a code is an enum.
     with_any_code {

@@ -50,6 +50,25 @@ impl Memory {
         answer(unsafe { (gpu.cuMemcpyHtoDAsync_v2)(to, bytes.as_ptr().cast(), bytes.len(), stream.handle()) })
     }
 
+    /// Copies bytes of another context's memory to the start, after all work before.
+    ///
+    /// # Safety
+    /// The other context has these bytes until the copy has ended.
+    pub unsafe fn write_from(
+        &mut self,
+        gpu: &Bound,
+        stream: &Stream,
+        other: &Context,
+        address: u64,
+        bytes: usize,
+    ) -> Result<(), Refusal> {
+        let to = self.inside(0, bytes);
+        let (own, theirs) = (self.context.handle(), other.handle());
+        // SAFETY: the memory has these bytes, and freeing it waits for this. Both contexts are held.
+        // The caller promises the rest.
+        answer(unsafe { (gpu.cuMemcpyPeerAsync)(to, own, address, theirs, bytes, stream.handle()) })
+    }
+
     /// Copies bytes from `start`, after all work before.
     ///
     /// # Safety

@@ -7,6 +7,7 @@ mod graph;
 mod kept;
 mod memory;
 mod module;
+mod peers;
 mod reads;
 mod staging;
 mod stream;

@@ -13,6 +13,7 @@ pub type CUevent = *mut c_void;
 pub type CUfunction = *mut c_void;
 pub type CUjit_option = u32;
 pub type CUmodule = *mut c_void;
+pub type CUpointer_attribute = u32;
 pub type CUgraph = *mut c_void;
 pub type CUgraphExec = *mut c_void;
 pub type CUstream = *mut c_void;
@@ -35,6 +36,10 @@ pub const CU_DEVICE_ATTRIBUTE_MULTIPROCESSOR_COUNT: CUdevice_attribute = 16;
 pub const CU_DEVICE_ATTRIBUTE_MAX_THREADS_PER_MULTIPROCESSOR: CUdevice_attribute = 39;
 pub const CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR: CUdevice_attribute = 75;
 pub const CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MINOR: CUdevice_attribute = 76;
+
+pub const CU_POINTER_ATTRIBUTE_MEMORY_TYPE: CUpointer_attribute = 2;
+pub const CU_POINTER_ATTRIBUTE_DEVICE_ORDINAL: CUpointer_attribute = 9;
+pub const CU_MEMORYTYPE_DEVICE: u32 = 2;
 
 pub const CU_EVENT_DEFAULT: u32 = 0;
 pub const CU_EVENT_RECORD_DEFAULT: u32 = 0;
@@ -63,6 +68,7 @@ mod tests {
             size_of::<CUfunction>(),
             size_of::<CUjit_option>(),
             size_of::<CUmodule>(),
+            size_of::<CUpointer_attribute>(),
             size_of::<CUgraph>(),
             size_of::<CUgraphExec>(),
             size_of::<CUstream>(),
@@ -78,6 +84,7 @@ mod tests {
             size_of::<sys::CUfunction>(),
             size_of::<sys::CUjit_option>(),
             size_of::<sys::CUmodule>(),
+            size_of::<sys::CUpointer_attribute>(),
             size_of::<sys::CUgraph>(),
             size_of::<sys::CUgraphExec>(),
             size_of::<sys::CUstream>(),
@@ -120,6 +127,15 @@ mod tests {
                 CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MINOR,
                 Attribute::CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MINOR as u32,
             ),
+            (
+                CU_POINTER_ATTRIBUTE_MEMORY_TYPE,
+                sys::CUpointer_attribute::CU_POINTER_ATTRIBUTE_MEMORY_TYPE as u32,
+            ),
+            (
+                CU_POINTER_ATTRIBUTE_DEVICE_ORDINAL,
+                sys::CUpointer_attribute::CU_POINTER_ATTRIBUTE_DEVICE_ORDINAL as u32,
+            ),
+            (CU_MEMORYTYPE_DEVICE, sys::CUmemorytype::CU_MEMORYTYPE_DEVICE as u32),
             (CU_EVENT_DEFAULT, sys::CUevent_flags::CU_EVENT_DEFAULT as u32),
             (CU_EVENT_RECORD_DEFAULT, sys::CUevent_record_flags::CU_EVENT_RECORD_DEFAULT as u32),
             (CU_EVENT_RECORD_EXTERNAL, sys::CUevent_record_flags::CU_EVENT_RECORD_EXTERNAL as u32),

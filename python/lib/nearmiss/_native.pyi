@@ -1348,8 +1348,8 @@ class MultiDetector:
     - `scene`: a Scene, or one Body, whose number is then 0.
     - `devices`: at least one Device, such as [Device(gpu=0), Device(gpu=1)].
 
-    Takes Discrete, Continuous, Earliest and Near. Positions are in host memory: each device gets a
-    copy. There are no submissions. Raises InvalidArgumentError without devices.
+    Takes Discrete, Continuous, Earliest and Near. Each device has a copy of positions. There are no
+    submissions. Raises InvalidArgumentError without devices.
     """
 
     def __new__(cls, scene: Scene | Body, devices: Sequence[Device]) -> MultiDetector: ...
@@ -1357,8 +1357,11 @@ class MultiDetector:
     def update(self, inputs: Motions) -> None:
         """Move bodies for the next queries: see Detector.update for the arguments.
 
-        Raises as Detector.update does, and InvalidArgumentError for arrays of a GPU: then nothing has
-        moved.
+        Arrays may be on any of the GPUs; the others get copies. All have read them when the call
+        returns.
+
+        Raises as Detector.update does, and InvalidArgumentError for arrays of another GPU, or of a GPU if
+        a device is a CPU: then nothing has moved.
         """
 
     def query(self, query: Query[_A]) -> _A:
