@@ -723,6 +723,14 @@ typedef struct {
     uint32_t on_device;
 } NearmissPoseRows;
 
+// A device's share of a query's last frame.
+typedef struct {
+    // Its part of the tiles, 0 to 1.
+    double tiles;
+    // Milliseconds of the frame, by the device's own clock.
+    double ms;
+} NearmissShare;
+
 // Milliseconds of each stage of a query, by the device's clock; `launch` and `wall` by the host's.
 // For diagnosis: stages may change.
 typedef struct {
@@ -1376,6 +1384,38 @@ NearmissCode nearmiss_scene_add(NearmissScene *scene,
 
 // Frees the scene. Detectors keep their copies.
 void nearmiss_scene_free(NearmissScene *scene);
+
+// Copies a scene to several devices of one host, which divide the work of each query. Each has all
+// positions and finds the pairs of its share; answers and hashes are those of one device. `devices`
+// points to `device_count` handles, at least one. See `nearmiss_detector_create`.
+//
+// The detector takes the calls of any other, except `nearmiss_detector_prepare`, `_submit`,
+// `_collect`, `_on_device`, `_plan` and `_update_poses`; distances, pairs of bodies and trees are
+// not divided. These fail with `NEARMISS_INVALID_ARGUMENT`, and so do motions in memory of a GPU if
+// a device is a CPU. Motions may be in memory of any of the GPUs, behind the work of its stream;
+// all devices have read them when the call returns.
+//
+// # Safety
+// So many handles are there. One thread at a time uses each device.
+NearmissCode nearmiss_detector_create_on_several(const NearmissDevice *const *devices,
+                                                 size_t device_count,
+                                                 const NearmissScene *scene,
+                                                 NearmissDetector **detector,
+                                                 NearmissError *error);
+
+// Writes each device's share of the last frame of a query: as many as the detector has devices.
+// Shares are 0 before the first frame.
+//
+// Fails with `NEARMISS_INVALID_ARGUMENT` for another number of shares, and for a detector that
+// `nearmiss_detector_create` made.
+//
+// # Safety
+// There is room for so many shares. The names of the query are texts or NULL.
+NearmissCode nearmiss_detector_shares(NearmissDetector *detector,
+                                      const NearmissQuery *query,
+                                      NearmissShare *shares,
+                                      size_t share_count,
+                                      NearmissError *error);
 
 // Prepares submissions of several queries. Each motion is in memory of the device (`on_device` is
 // 1); write new positions there between submissions. Bodies that are not named rest. The call

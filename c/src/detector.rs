@@ -3,6 +3,7 @@
 use crate::device::NearmissDevice;
 use crate::error::{NearmissCode, NearmissError, call, free, given, make, refused};
 use crate::scene::NearmissScene;
+use crate::several::Machines;
 use nearmiss::scene::BodyId;
 use nearmiss::{Body, Detector, Device, Error, Query};
 use std::ffi::CString;
@@ -11,8 +12,8 @@ use std::sync::atomic::Ordering;
 
 /// A scene on a device. It answers queries of all kinds, step after step, from one memory.
 pub struct NearmissDetector {
-    pub(crate) detector: Detector,
-    pub(crate) device: Device,
+    pub(crate) detector: Machines,
+    pub(crate) devices: Vec<Device>,
     /// Queries of the last preparation.
     pub(crate) prepared: Vec<Query>,
     /// Lists that `nearmiss_detector_on_device` has shown since then.
@@ -26,10 +27,10 @@ pub struct NearmissDetector {
 }
 
 impl NearmissDetector {
-    pub(crate) fn new(detector: Detector, device: Device) -> NearmissDetector {
+    pub(crate) fn new(detector: Machines, devices: Vec<Device>) -> NearmissDetector {
         let (prepared, starts) = (Vec::new(), Vec::new());
         let (plan, name) = (CString::default(), CString::default());
-        NearmissDetector { detector, device, prepared, starts, plan, name, broken: false }
+        NearmissDetector { detector, devices, prepared, starts, plan, name, broken: false }
     }
 
     /// The work of a call with a detector. After a panic it is not used again.
@@ -84,7 +85,7 @@ pub extern "C" fn nearmiss_detector_create(
         let NearmissScene { scene, is_copied } = given(scene, "scene")?;
         let detector = Detector::new(device.clone(), scene.clone())?;
         is_copied.store(true, Ordering::Relaxed);
-        Ok(NearmissDetector::new(detector, device))
+        Ok(NearmissDetector::new(Machines::One(Box::new(detector)), vec![device]))
     })
 }
 
@@ -142,7 +143,7 @@ mod tests {
         let body = Body::deformable(Mesh::new("a point", corners, vec![[0, 1, 2]]).expect("a mesh"));
         let device = Device::open(Backend::Cpu, Some(1)).expect("a thread");
         let detector = Detector::new(device.clone(), body).expect("a detector");
-        let mut own = NearmissDetector::new(detector, device);
+        let mut own = NearmissDetector::new(Machines::One(Box::new(detector)), vec![device]);
         assert_eq!(nearmiss_detector_rebuild(Some(&mut own), None), NearmissCode::NEARMISS_OK);
         let code = NearmissDetector::work(Some(&mut own), None, |_| panic!("a fault"));
         assert_eq!(code, NearmissCode::NEARMISS_BUG);

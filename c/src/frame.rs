@@ -25,7 +25,7 @@ impl NearmissDetector {
         NearmissDetector::work(detector, error, |own| {
             let answer = given(answer, "answer")?;
             let found = query(own)?;
-            let made = NearmissAnswer::new(found, own.device.bytes().1)?;
+            let made = NearmissAnswer::new(found, own.devices.iter().map(|device| device.bytes().1).sum())?;
             answer.write(Box::into_raw(Box::new(made)));
             Ok(())
         })

@@ -26,6 +26,7 @@ mod records;
 mod research;
 mod rows;
 mod scene;
+mod several;
 mod submit;
 mod summary;
 
@@ -52,6 +53,7 @@ pub use records::*;
 pub use research::*;
 pub use rows::{NearmissNumber, NearmissRows, nearmiss_doubles, nearmiss_floats};
 pub use scene::*;
+pub use several::*;
 pub use submit::*;
 pub use summary::*;
 

@@ -193,7 +193,8 @@ pub unsafe extern "C" fn nearmiss_detector_on_device(
         let to = given(answer, "answer")?;
         // SAFETY: the caller's promise.
         let query = unsafe { given(query, "query")?.query() }?;
-        let found = own.detector.on_device(&query).ok_or_else(|| own.not_on_device(&query))?;
+        let found = own.detector.one("an answer in device memory")?.on_device(&query);
+        let found = found.ok_or_else(|| own.not_on_device(&query))?;
         let DeviceAnswer { entries, lists, is_ordered, status, earliest, edges, starts, .. } = found;
         let entries = match entries {
             Entries::TrianglePairs => NearmissEntries::NEARMISS_TRIANGLE_PAIRS,

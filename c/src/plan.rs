@@ -26,7 +26,8 @@ pub unsafe extern "C" fn nearmiss_detector_plan(
         // SAFETY: the caller's promise.
         let query = unsafe { given(query, "query")?.query() }?;
         let bug = |what: String| Error::Bug { what: format!("the plan as JSON: {what}") };
-        let text = serde_json::to_string(&own.detector.plan(&query)?).map_err(|e| bug(e.to_string()))?;
+        let text = serde_json::to_string(&own.detector.one("a plan")?.plan(&query)?)
+            .map_err(|e| bug(e.to_string()))?;
         own.plan = CString::new(text).map_err(|e| bug(e.to_string()))?;
         to.write(own.plan.as_ptr());
         Ok(())

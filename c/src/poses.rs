@@ -102,15 +102,16 @@ pub unsafe extern "C" fn nearmiss_detector_update_poses(
             })
         };
         let ids = numbers.iter().enumerate().map(row_of).collect::<Result<Vec<BodyId>, Error>>()?;
+        let detector = own.detector.one("arrays of poses")?;
         // SAFETY: the caller's promise, for all rows.
         unsafe {
             let here = start.host()?;
             let from = start.poses(&here)?;
             match end {
-                None => own.detector.update_poses(&ids, from),
+                None => detector.update_poses(&ids, from),
                 Some(end) => {
                     let there = end.host()?;
-                    own.detector.update_pose_steps(&ids, from, end.poses(&there)?)
+                    detector.update_pose_steps(&ids, from, end.poses(&there)?)
                 }
             }
         }

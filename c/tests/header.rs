@@ -190,6 +190,7 @@ fn the_compiler_lays_out_the_same() {
         NearmissResearch,
         NearmissRows,
         NearmissSelfCollision,
+        NearmissShare,
         NearmissStages,
         NearmissStatus,
         NearmissSummary,

@@ -11,6 +11,7 @@ mod left_out;
 mod one_detector;
 mod poses;
 mod refusals;
+mod several;
 mod submitted;
 mod thickness;
 
