@@ -13,6 +13,18 @@ mkdir -p "$out"
 
 machine() { nvidia-smi --query-gpu=name,driver_version --format=csv,noheader; }
 have() { command -v "$1" >/dev/null; }
+
+# Writes two scenes into a folder: a cloth with a thickness and exclusions, and a heap of rigid bodies that turn.
+small_scenes() {
+    local body
+    "$program" lab scene draped --triangles 2000 --out "$1" >/dev/null
+    printf '[[body]]\nmeshes = ["draped_t0.ply", "draped_t1.ply"]\nthickness = 0.001\nexclude = { ring = 2 }\n' >"$1/cloth.toml"
+    for body in $(seq 0 26); do
+        printf '[[body]]\nname = "body %d"\nmesh = "draped_t0.ply"\nkind = "rigid"\n' "$body"
+        printf 'poses = [{ translation = [%s, %s, %s] }, { translation = [%s, %s, %s], turn = [0.1, 0.2, 0.3] }]\n' \
+            "0.$((body % 3 * 3))" "0.$((body / 3 % 3 * 3))" "0.$((body / 9))" "0.$((body % 3 * 3))" "0.$((body / 3 % 3 * 2))" "0.$((body / 9))"
+    done >"$1/heap.toml"
+}
 verdicts=()
 verdict() { verdicts+=("$(printf '%-10s %s' "$1" "$2")"); }
 
@@ -44,18 +56,24 @@ if [ "$half" != figures ]; then
 
     # 2. Memory and shared memory, under the sanitizer.
     if have compute-sanitizer; then
+        few="--scene draped --triangles 6000"
+        small_scenes "$out/scenes"
+        cloth=$out/scenes/cloth.toml heap=$out/scenes/heap.toml
         for tool in memcheck racecheck initcheck synccheck; do
-            for query in --discrete "--discrete --adjacent --bounding-volume obb --traversal queue" \
-                "--discrete --solver moller --traversal per-leaf --refit levels" \
-                --continuous "--continuous --solver cubic-f32 --traversal per-leaf-spill --budget 4" --earliest \
-                "--discrete --traversal queue-gtx285 --refit levels" "--continuous --bounding-volume obb --traversal steal" \
-                "--discrete --traversal front --repeat 5" "--continuous --min-separation 0.01 --bounding-volume obb"; do
+            for query in "$few --discrete" "$few --discrete --adjacent --bounding-volume obb --traversal queue" \
+                "$few --discrete --solver moller --traversal per-leaf --refit levels" \
+                "$few --continuous" "$few --continuous --solver cubic-f32 --traversal per-leaf-spill --budget 4" "$few --earliest" \
+                "$few --discrete --traversal queue-gtx285 --refit levels" "$few --continuous --bounding-volume obb --traversal steal" \
+                "$few --discrete --traversal front --repeat 5" "$few --continuous --min-separation 0.01 --bounding-volume obb" \
+                "$few --near 0.01" "$few --earliest --first-contacts" \
+                "$few --continuous --min-separation 0.005 --approaching" "$cloth --near 0.01" "$cloth --continuous --min-separation 0.005" \
+                "$heap --discrete" "$heap --continuous" "$heap --near 0.01" "$heap --body-pairs" "$heap --body-distances 0.05"; do
                 # shellcheck disable=SC2086
-                if compute-sanitizer --tool $tool --error-exitcode 9 "$program" detect --scene draped --triangles 6000 \
-                    $query --backend cuda >"$out/sanitizer.txt" 2>&1; then
-                    verdict "$tool" "clean: $query"
+                if compute-sanitizer --tool $tool --error-exitcode 9 "$program" detect $query --backend cuda \
+                    >"$out/sanitizer.txt" 2>&1; then
+                    verdict "$tool" "clean: ${query//"$out/scenes/"/}"
                 else
-                    verdict "$tool" "FAILED: $query: $(tail -n 1 "$out/sanitizer.txt")"
+                    verdict "$tool" "FAILED: ${query//"$out/scenes/"/}: $(tail -n 1 "$out/sanitizer.txt")"
                 fi
             done
         done
