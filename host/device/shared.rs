@@ -62,6 +62,19 @@ impl Device {
         Self::gpu(0)
     }
 
+    /// Calls a function while this thread is bound to the GPU's context. Some libraries lend only
+    /// memory of the current GPU.
+    ///
+    /// # Errors
+    /// [`Error::Device`] with the driver's text.
+    pub fn while_current<T>(&self, call: impl FnOnce() -> T) -> Result<T, Error> {
+        match &*self.machine {
+            Machine::Emulator(_) => Ok(call()),
+            #[cfg(feature = "cuda")]
+            Machine::Cuda(c) => c.while_current(call),
+        }
+    }
+
     /// The owner of context and stream: see [`Device::from_stream_of`].
     pub fn owner(&self) -> Option<&Owner> {
         match &*self.machine {

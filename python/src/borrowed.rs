@@ -38,12 +38,18 @@ pub fn is_on_gpu(object: &Bound<'_, PyAny>) -> bool {
     object.hasattr("__cuda_array_interface__").unwrap_or(false)
 }
 
+/// The number of the GPU that has an array; `None` if the array does not say.
+fn gpu_of(object: &Bound<'_, PyAny>) -> PyResult<Option<i32>> {
+    if !object.hasattr("__dlpack_device__")? {
+        return Ok(None);
+    }
+    let place: (i32, i32) = object.call_method0("__dlpack_device__")?.extract()?;
+    Ok(Some(place.1))
+}
+
 /// The device that has an array, of several; the first if none has.
 pub fn holder<'a>(object: &Bound<'_, PyAny>, devices: &[&'a Device]) -> PyResult<&'a Device> {
-    let on = match object.hasattr("__dlpack_device__")? {
-        true => Some(object.call_method0("__dlpack_device__")?.extract::<(i32, i32)>()?.1),
-        false => None,
-    };
+    let on = gpu_of(object)?;
     let has = |device: &&&Device| on.is_some() && device.ordinal().map(|ordinal| ordinal as i32) == on;
     let found = devices.iter().find(has).or(devices.first());
     found.copied().ok_or_else(|| raised(Error::Bug { what: "arrays for no device".into() }))
@@ -63,6 +69,13 @@ pub fn on_gpu(
             "give the detector a device of that GPU, or arrays of the host",
         ));
     };
+    let elsewhere = |gpu: i32| {
+        choice(format!("{what} are on GPU {gpu}, and the detector is on GPU {ordinal}"), "put both on one")
+    };
+    // torch says it in other words.
+    if let Some(gpu) = gpu_of(object)?.filter(|&gpu| gpu != ordinal as i32) {
+        return Err(elsewhere(gpu));
+    }
     let (shape, held) = match told {
         // If it names the stream that makes the data, that must be ours: nothing here waits for another.
         Some((_, Some(theirs))) if theirs != stream.max(1) => {
@@ -78,15 +91,14 @@ pub fn on_gpu(
         None => {
             // 0 has no meaning there; 1 is the default stream.
             let kwargs = [("stream", stream.max(1))].into_py_dict(object.py())?;
-            let tensor = Taken::of(&object.call_method("__dlpack__", (), Some(&kwargs))?)?;
+            // torch lends only what is on the current GPU.
+            let lent = device.while_current(|| object.call_method("__dlpack__", (), Some(&kwargs)));
+            let tensor = Taken::of(&lent.map_err(raised)??)?;
             (tensor.shape()?, Held::Taken { _tensor: tensor })
         }
     };
     if shape.place.ordinal != ordinal as i32 {
-        return Err(choice(
-            format!("{what} are on GPU {}, and the detector is on GPU {ordinal}", shape.place.ordinal),
-            "put both on one",
-        ));
+        return Err(elsewhere(shape.place.ordinal));
     }
     Ok(BorrowedRows { rows: rows(&shape, width, what)?, held })
 }

@@ -401,6 +401,16 @@ def test_arrays_of_one_gpu_are_read_by_all():
         with pytest.raises(nm.InputError):
             several.update(arrays)
             several.query(QUERIES[2])
+    arrays[0] = tuple(torch.tensor(end, device="cuda:1") for end in steps[0])
+    for detector in [
+        nm.MultiDetector(scene()[0], [nm.Device(gpu=0)]),
+        nm.Detector(scene()[0], device=nm.Device(gpu=0)),
+    ]:
+        with pytest.raises(nm.InvalidArgumentError, match="on GPU 1, and the detector is on GPU 0"):
+            detector.update({0: arrays[0]})
+    other = nm.Detector(scene()[0], device=nm.Device(gpu=1))
+    other.update({0: arrays[0], 1: steps[1], 2: steps[2]})
+    assert other.query(QUERIES[0]).hash == one.query(QUERIES[0]).hash
     mixed = nm.MultiDetector(scene()[0], [nm.Device(gpu=0), nm.Device("cpu")])
     arrays[0] = tuple(torch.tensor(end, device="cuda:0") for end in steps[0])
     with pytest.raises(nm.InvalidArgumentError, match="a GPU and a CPU"):

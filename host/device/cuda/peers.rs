@@ -27,6 +27,12 @@ impl Cuda {
         }
     }
 
+    /// Calls a function while the thread is bound to the GPU's context.
+    pub fn while_current<T>(&self, call: impl FnOnce() -> T) -> Result<T, Error> {
+        let _bound = self.context.bind().map_err(refused(BINDING))?;
+        Ok(call())
+    }
+
     /// Copies bytes from memory of another GPU, after all work of this one's stream.
     ///
     /// # Safety
