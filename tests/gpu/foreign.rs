@@ -167,7 +167,7 @@ fn drive(kind: QueryKind, triangles: usize, frames: usize) -> (usize, usize) {
 fn a_thousand_replays_lose_nothing() {
     let _alone = simulator::alone();
     for (kind, triangles, frames) in [
-        (QueryKind::Continuous, 400, 1_000),
+        (QueryKind::Continuous, 4_000, 1_000),
         (QueryKind::Discrete, 1_000, 1_000),
         (QueryKind::Near, 400, 300),
         (QueryKind::Earliest, 400, 300),
