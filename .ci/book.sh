@@ -8,7 +8,7 @@ root=$PWD
 target=$(mkdir -p "${CARGO_TARGET_DIR:-target}" && cd "${CARGO_TARGET_DIR:-target}" && pwd)
 cargo build --locked --release -p nearmiss-cli
 # As .ci/c.sh.
-cargo build --locked --lib --bins --examples
+cargo build --locked --workspace --lib --bins --examples
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 

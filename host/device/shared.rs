@@ -62,7 +62,7 @@ impl Device {
         Self::gpu(0)
     }
 
-    /// Calls a function while this thread is bound to the GPU's context. Some libraries lend only
+    /// Calls a function while this thread is bound to the GPU's context. Some libraries export only
     /// memory of the current GPU.
     ///
     /// # Errors

@@ -91,7 +91,7 @@ pub fn on_gpu(
         None => {
             // 0 has no meaning there; 1 is the default stream.
             let kwargs = [("stream", stream.max(1))].into_py_dict(object.py())?;
-            // torch lends only what is on the current GPU.
+            // torch exports only what is on the current GPU.
             let lent = device.while_current(|| object.call_method("__dlpack__", (), Some(&kwargs)));
             let tensor = Taken::of(&lent.map_err(raised)??)?;
             (tensor.shape()?, Held::Taken { _tensor: tensor })
