@@ -133,12 +133,8 @@ impl Machines {
         matches!(self, Machines::One(own) if own.is_prepared())
     }
 
-    /// Brings positions to the host. Those of several devices are there.
     pub(crate) fn download_positions(&mut self) -> Result<(), Error> {
-        match self {
-            Machines::One(own) => own.download_positions(),
-            Machines::Several(_) => Ok(()),
-        }
+        both!(self, own => own.download_positions())
     }
 }
 

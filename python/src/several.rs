@@ -246,6 +246,9 @@ impl MultiDetector {
     ) -> PyResult<()> {
         let (id, given) = (self.body(py, body)?, exclusions::Given::of(ring, within, rest, faces)?);
         self.run(py, Does::Queries, |one| {
+            if given.rests_now() {
+                one.detector.download_positions()?;
+            }
             let own = given.of_body(one.detector.scene(), id);
             one.detector.exclude(id, &own)
         })
