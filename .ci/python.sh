@@ -51,7 +51,7 @@ NEARMISS_TRIMESH_TESTS=$folder/$trimesh/tests/test_collision.py \
 "$folder/user/bin/pip" -q install warp-lang jax
 "$folder/user/bin/pip" -q --retries 0 install --index-url https://download.pytorch.org/whl/cpu torch 2>/dev/null \
     || "$folder/user/bin/pip" -q install torch
-"$folder/user/bin/python" -m pytest -q -rs python/tests/test_{arrays,gpu,libraries,loops}.py
+"$folder/user/bin/python" -m pytest -q -rs python/tests/test_{arrays,gpu,gpus,libraries,loops}.py
 # Blender is large, needs an old numpy, and exists for few versions of Python.
 wheel=$(echo "$folder"/wheels/nearmiss-*.whl)
 python3 -m venv "$folder/blender"

@@ -3,8 +3,8 @@
 use crate::dlpack::{CPU, CUDA, CUDA_MANAGED, Dtype, FLOAT, Place, Shape, Taken, packed};
 use crate::errors::{choice, raised};
 use crate::host::are_floats;
+use nearmiss::Device;
 use nearmiss::scene::{DeviceRows, Number};
-use nearmiss::{Device, Error};
 use numpy::npyffi::_PyArray_GET_ITEM_DATA;
 use numpy::{PyArrayDescrMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -47,23 +47,20 @@ fn gpu_of(object: &Bound<'_, PyAny>) -> PyResult<Option<i32>> {
     Ok(Some(place.1))
 }
 
-/// The device that has an array, of several; the first if none has.
-pub fn holder<'a>(object: &Bound<'_, PyAny>, devices: &[&'a Device]) -> PyResult<&'a Device> {
-    let on = gpu_of(object)?;
-    let has = |device: &&&Device| on.is_some() && device.ordinal().map(|ordinal| ordinal as i32) == on;
-    let found = devices.iter().find(has).or(devices.first());
-    found.copied().ok_or_else(|| raised(Error::Bug { what: "arrays for no device".into() }))
-}
-
-/// Rows of `width` numbers in a GPU's memory, behind all work that makes them.
+/// Rows of `width` numbers in the memory of one of these devices, behind all work that makes them.
 pub fn on_gpu(
     object: &Bound<'_, PyAny>,
-    device: &Device,
+    devices: &[&Device],
     (width, what): (i64, &str),
 ) -> PyResult<BorrowedRows> {
     let by_dlpack = object.hasattr("__dlpack__")?;
     let told = if by_dlpack { None } else { Some(by_cuda_array_interface(object, what)?) };
-    let Some((ordinal, stream)) = device.ordinal().zip(device.stream()) else {
+    let gpu = gpu_of(object)?;
+    let has = |device: &&&Device| gpu.is_some() && device.ordinal().map(|ordinal| ordinal as i32) == gpu;
+    let device = devices.iter().find(has).or(devices.first());
+    let Some((device, ordinal, stream)) =
+        device.and_then(|device| Some((device, device.ordinal()?, device.stream()?)))
+    else {
         return Err(choice(
             format!("{what} are on a GPU, and the detector is on the CPU"),
             "give the detector a device of that GPU, or arrays of the host",
@@ -73,7 +70,7 @@ pub fn on_gpu(
         choice(format!("{what} are on GPU {gpu}, and the detector is on GPU {ordinal}"), "put both on one")
     };
     // torch says it in other words.
-    if let Some(gpu) = gpu_of(object)?.filter(|&gpu| gpu != ordinal as i32) {
+    if let Some(gpu) = gpu.filter(|&gpu| gpu != ordinal as i32) {
         return Err(elsewhere(gpu));
     }
     let (shape, held) = match told {

@@ -1,6 +1,6 @@
 //! Motions of bodies, as Python gives them.
 
-use crate::borrowed::{BorrowedRows, Held, holder, is_on_gpu, on_cpu, on_gpu};
+use crate::borrowed::{BorrowedRows, Held, is_on_gpu, on_cpu, on_gpu};
 use crate::errors::choice;
 use crate::host::{Most, positions};
 use crate::key::{Key, bodies};
@@ -201,7 +201,7 @@ fn pose(object: &Bound<'_, PyAny>, of: Of<'_>) -> PyResult<Option<GivenPose>> {
 /// One end: read where it lies if the device reaches it there, else copied.
 fn end(object: &Bound<'_, PyAny>, Of { reader, what, most, .. }: Of<'_>) -> PyResult<End> {
     if is_on_gpu(object) {
-        return on_gpu(object, holder(object, reader.devices)?, (3, what)).map(End::Borrowed);
+        return on_gpu(object, reader.devices, (3, what)).map(End::Borrowed);
     }
     if reader.in_place
         && !reader.is_gpu()

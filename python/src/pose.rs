@@ -1,6 +1,6 @@
 //! Poses of rigid bodies.
 
-use crate::borrowed::{Held, holder, is_on_gpu, on_gpu};
+use crate::borrowed::{Held, is_on_gpu, on_gpu};
 use crate::errors::{choice, raised};
 use crate::host::{points, row, rows};
 use crate::matrix::pose_of;
@@ -171,7 +171,7 @@ impl Pose {
             return Ok(GivenPose::Known(pose));
         }
         let one_row = |of: &Py<PyAny>, width: i64, what: &str| {
-            let rows = on_gpu(of.bind(py), holder(of.bind(py), devices)?, (width, what))?;
+            let rows = on_gpu(of.bind(py), devices, (width, what))?;
             match rows.rows.len() {
                 1 => Ok(rows),
                 rows => Err(choice(

@@ -26,8 +26,8 @@ impl Columns {
         let (p, q) = (format!("{which}positions"), format!("{which}quaternions"));
         match (is_on_gpu(positions), is_on_gpu(quaternions)) {
             (true, true) => Ok(Columns::Borrowed(
-                on_gpu(positions, device, (3, &p))?,
-                on_gpu(quaternions, device, (4, &q))?,
+                on_gpu(positions, &[device], (3, &p))?,
+                on_gpu(quaternions, &[device], (4, &q))?,
             )),
             (false, false) => Ok(Columns::Here(doubles(positions, &p)?, doubles(quaternions, &q)?)),
             _ => Err(choice(
