@@ -150,16 +150,14 @@ impl MultiDetector {
 
     fn updated(&mut self, motions: &[(BodyId, Motion)], query: Option<&Query>) -> Result<(), Error> {
         let is_first = self.parts[0].is_first_of(motions);
-        let updated = self.lent(motions).and_then(|lent| {
+        let is_lent = motions.iter().any(|(_, input)| matches!(input, Motion::OnDevice(_)));
+        let mut updated = self.lent(motions).and_then(|lent| {
             self.each_numbered(|part, detector| detector.apply(&lent[part], query)).map(drop)
         });
-        let updated = if motions.iter().any(|(_, input)| matches!(input, Motion::OnDevice(_))) {
+        if is_lent {
             // The caller may write them again.
-            let read = self.each(|detector| detector.device().wait());
-            updated.and(read.map(drop))
-        } else {
-            updated
-        };
+            updated = updated.and(self.each(|detector| detector.device().wait()).map(drop));
+        }
         if is_first && updated.is_ok() {
             // All devices build their tiles after the first update of a body.
             self.divisions.iter_mut().for_each(|division| division.wear.add_new_place());

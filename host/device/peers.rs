@@ -22,13 +22,13 @@ impl Device {
     }
 
     /// Copies bytes from another GPU's memory to the start of a buffer, after all work of this one's
-    /// stream. The host waits for the other's work.
+    /// stream.
     ///
     /// # Errors
     /// [`Error::Device`] with the driver's text.
     ///
     /// # Safety
-    /// The other GPU has these bytes until the copy has ended.
+    /// The other GPU has written these bytes, and has them until the copy has ended.
     #[cfg_attr(not(feature = "cuda"), allow(unused_variables, reason = "there is no GPU"))]
     pub(crate) unsafe fn copy_of_other<T: Pod>(
         &self,
@@ -38,7 +38,6 @@ impl Device {
         to: &mut Buffer<T>,
     ) -> Result<(), Error> {
         self.usage.allows("memory was written by another GPU")?;
-        other.wait()?;
         match (&*self.machine, &*other.machine) {
             #[cfg(feature = "cuda")]
             (Machine::Cuda(own), Machine::Cuda(other)) => match &mut to.memory {

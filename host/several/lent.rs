@@ -32,6 +32,8 @@ impl MultiDetector {
             return Err(refused(&what, "give positions in host memory, or leave the CPU out"));
         }
         let devices: Vec<Device> = self.parts.iter().map(|part| part.device().clone()).collect();
+        // One of them has the rows; the others copy when it has written them.
+        devices.iter().try_for_each(Device::wait)?;
         self.copies.resize_with(devices.len(), Copies::default);
         let each = devices.iter().zip(&mut self.copies);
         each.map(|(device, copies)| copies.motions(device, &devices, motions)).collect()
@@ -86,7 +88,7 @@ impl Copies {
         };
         let copy = self.0[at].insert(copy);
         // SAFETY: the maker of the rows promised that a device of the detector has them while work
-        // may read them: the owner, as its driver says.
+        // may read them: the owner, as its driver says. All of its work was waited for.
         unsafe { device.copy_of_other(owner, rows.address(), bytes, copy) }?;
         Ok(rows.copied_to(copy.span().addr()))
     }
