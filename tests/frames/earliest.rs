@@ -16,7 +16,7 @@ use nearmiss_kernels::abi::earliest;
 use nearmiss_lab::scene::Rng;
 use nearmiss_lab::{OneQuery, OneQueryOnSeveral};
 use support::asked::{by, certified, with_tolerance};
-use support::{ORDERS, ask, engine, sanitizer};
+use support::{ORDERS, ask, cases, engine, sanitizer};
 
 type Corner = [f64; 3];
 /// A triangle at both ends of the step.
@@ -222,7 +222,8 @@ fn specks_that_grow_have_one_earliest_time() {
 fn hostile_scenes_have_one_earliest_time() {
     let mut rng = Rng::new(20_261_125);
     let mut found = [0; 3];
-    for scene in 0..3_000u64 {
+    let scenes = cases(360, 3_000);
+    for scene in 0..scenes as u64 {
         let kind = scene % 6;
         let all = triangles(kind, 1 + (scene % 5) as usize, &mut rng);
         let solver = SOLVERS[(scene / 6 % 5) as usize];
@@ -236,7 +237,7 @@ fn hostile_scenes_have_one_earliest_time() {
         found[first.map_or(0, |(_, undecided)| 1 + usize::from(undecided))] += 1;
     }
     println!("nothing, a contact, an undecided pair: {found:?}");
-    assert!(found.iter().all(|n| *n > 100), "{found:?}: of each some");
+    assert!(found.iter().all(|n| *n > scenes / 30), "{found:?}: of each some");
 }
 
 /// The same in all ways, with blocks in any order and side by side.

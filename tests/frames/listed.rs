@@ -16,7 +16,7 @@ use nearmiss_lab::scene::Rng;
 use std::collections::BTreeMap;
 use support::asked::certified;
 use support::brute::{Row, Seen, fault, verdict};
-use support::{ask, data, engine, moving, ways};
+use support::{ask, data, engine, moving, some_ways, ways};
 
 type Corner = [f64; 3];
 /// A triangle at both ends of the step.
@@ -185,10 +185,10 @@ fn near_misses(answer: &Contacts) -> usize {
     answer.contacts().iter().filter(|c| c.status == Status::Undecided).count()
 }
 
-/// Queries in every way; returns the first that differs.
-fn differs(bodies: &[Body], query: Query) -> Result<Contacts, String> {
+/// Queries in some ways; returns the first that differs.
+fn differs(bodies: &[Body], query: Query, ways: impl Iterator<Item = Query>) -> Result<Contacts, String> {
     let truth = ask(engine(), bodies.to_vec(), query);
-    for way in ways(query) {
+    for way in ways {
         let answer = ask(engine(), bodies.to_vec(), way);
         if answer.hash() != truth.hash() || answer.rows != truth.rows {
             let [ours, theirs] = [&truth, &answer].map(|a| a.contacts().to_vec());
@@ -201,18 +201,20 @@ fn differs(bodies: &[Body], query: Query) -> Result<Contacts, String> {
 
 #[test]
 fn near_misses_are_listed_by_every_way_or_by_none() {
-    let mut counts = Vec::new();
+    let (mut counts, mut turn) = (Vec::new(), 0);
     for (name, bodies) in scenes() {
         for (tolerance, budget) in
             [(1e-1, None), (1e-2, Some(1)), (1e-3, None), (1e-6, Some(1)), (0.0, None), (0.0, Some(1))]
         {
             let query = asking(tolerance, budget);
             let what = format!("{name}, {tolerance:e}, {budget:?}");
-            let answer = differs(&bodies, query).unwrap_or_else(|odd| panic!("{what}: {odd}"));
+            let answer =
+                differs(&bodies, query, some_ways(query, turn)).unwrap_or_else(|odd| panic!("{what}: {odd}"));
             let p =
                 Params { max_iterations: budget.unwrap_or(Params::MAX_ITERATIONS), ..Params::new(tolerance) };
             assert_eq!(fault(answer.contacts(), &brute(&bodies, &p), &[]), None, "{what}");
             println!("{what}: {} listed, {} of them undecided", answer.len(), near_misses(&answer));
+            turn += 1;
             counts.push((name.clone(), near_misses(&answer)));
         }
     }
@@ -234,7 +236,7 @@ fn what_once_differed_is_alike() {
                 let query =
                     Continuous::by(Certified { tolerance, max_iterations: boxes, ..Certified::default() })
                         .into();
-                let said = differs(&bodies, query);
+                let said = differs(&bodies, query, ways(query));
                 assert_eq!(said.err(), None, "{}, {tolerance:?}, {boxes:?}", folder.display());
             }
         }
@@ -247,7 +249,7 @@ fn what_is_near_a_separation_is_listed_by_every_way_or_by_none() {
     for (name, bodies) in scenes().into_iter().step_by(3) {
         for (tolerance, separation) in [(1e-2, 0.02), (1e-3, 1e-3), (0.0, 1.0 / 1024.0)] {
             let query = certified(asking(tolerance, None), |all| all.min_separation = separation);
-            let said = differs(&bodies, query);
+            let said = differs(&bodies, query, ways(query));
             assert_eq!(said.err(), None, "{name}, {tolerance:e}, {separation}");
         }
     }

@@ -133,7 +133,7 @@ fn the_sanitizer_sees_no_fault_behind_an_interrupt() {
 fn a_sample_answers_after_an_interrupt() {
     // An earliest query takes one of 2,048 tiles and more.
     let scene = Scene::from(scene::draped(70_000).expect("a cloth"));
-    interrupts(|| threads(2), &scene, asked::of(QueryKind::Earliest), 6);
+    interrupts(|| threads(2), &scene, asked::of(QueryKind::Earliest), 1);
 }
 
 /// An interrupt ends a part of a frame: without one the frame has many more looks than a launch.

@@ -17,7 +17,7 @@ use nearmiss::{Body, Device, Mesh, Query};
 use nearmiss_lab::{OneQuery, OneQueryOnSeveral, scene};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
-use support::{ORDERS, engine, sanitizer, ways};
+use support::{ORDERS, engine, sanitizer};
 
 /// Squares of a sheet, `n` by `n`.
 fn sheet_faces(n: u32) -> Vec<[u32; 3]> {

@@ -24,7 +24,7 @@ fn too_little<T>(peak: u64, mut of: impl FnMut(Device) -> Option<(T, Contacts)>)
 
 #[test]
 fn bodies_that_move_are_found_alike_in_slices() {
-    let scene = Bodies::pile(40, 20, 10).expect("a pile");
+    let scene = Bodies::pile(16, 8, 6).expect("a pile");
     for query in queries() {
         let whole = engine();
         let mut one = OneQuery::new(whole.clone(), scene.scene.clone(), query).expect("a detector");

@@ -174,7 +174,7 @@ fn a_walk_that_needs_the_host_is_refused() {
 fn what_outgrows_its_room_is_seen_and_answered() {
     for kind in support::asked::KINDS {
         let device = engine();
-        let (mut scene, id, [t0, t1]) = pair(600);
+        let (mut scene, id, [t0, t1]) = pair(280);
         // Every triangle keeps its size, and goes to where its first corner is, so many times as far.
         let spread = |points: &[[f32; 3]], by: f32| -> Vec<[f32; 3]> {
             let of = |triangle: &[[f32; 3]]| {
@@ -185,7 +185,7 @@ fn what_outgrows_its_room_is_seen_and_answered() {
         };
         // A distance query lists few pairs, except those that may share a point: around these it
         // does.
-        let (still, [there, _]) = soup(300, 3);
+        let (still, [there, _]) = soup(140, 3);
         let there = Positions::F32(spread(&there, 0.0));
         scene.add(Body::fixed(Mesh::new("around one point", there, still.faces().to_vec()).expect("a mesh")));
         let mut memory = [&t0, &t1].map(|points| Points::new(&device, &spread(points, 4.0)));

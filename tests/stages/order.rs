@@ -31,10 +31,10 @@ fn uneven(n: usize, every: usize) -> Mesh {
 #[test]
 fn tiles_and_trees_have_the_same_answer() {
     let scenes: [Scene; 4] = [
-        scene::scene("cloth-ball", 9_000, 1).expect("cloth").into(),
-        scene::Bodies::pile(30, 20, 12).expect("a pile").scene,
-        scene::Bodies::worlds(6, 5).expect("worlds").scene,
-        Body::deformable(uneven(3_000, 300)).into(),
+        scene::scene("cloth-ball", 4_000, 1).expect("cloth").into(),
+        scene::Bodies::pile(16, 8, 6).expect("a pile").scene,
+        scene::Bodies::worlds(4, 4).expect("worlds").scene,
+        Body::deformable(uneven(1_500, 150)).into(),
     ];
     for scene in scenes {
         for query in queries() {

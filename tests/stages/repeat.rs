@@ -27,7 +27,7 @@ fn sanitizer() -> Device {
 
 #[test]
 fn a_repeated_stage_leaves_the_answer_as_it_is() {
-    let body = scene::scene("soup-moving", 300, 3).expect("a scene");
+    let body = scene::scene("soup-moving", 150, 3).expect("a scene");
     for device in [engine(), sanitizer()] {
         for query in Query::every() {
             // A distance is that of two bodies.

@@ -166,7 +166,8 @@ fn tiles_are_chosen_unless_something_of_trees_is() {
     assert!(error.contains("the nearest pair is searched down a tree"), "{error}");
 }
 
-/// Two sheets of 129 by 129 cells, each in a plane at the start; the upper one falls from 1 to `down`, and tilts by `tilt`.
+/// Two sheets of 129 by 129 cells, each in a plane at the start, of which a quarter is over the
+/// other one; the upper one falls from 1 to `down`, and tilts by `tilt`.
 fn sheets(down: f32, tilt: f32) -> Body {
     const CELLS: u32 = 129;
     const ROW: u32 = CELLS + 1;
@@ -177,10 +178,10 @@ fn sheets(down: f32, tilt: f32) -> Body {
     let [t0, t1] = [(1.0, 0.0), (down, tilt)].map(|(height, tilt)| {
         let point = |i: u32, aside: f32, height: f32| {
             let [x, y] = [i % ROW, i / ROW].map(|i| i as f32 / CELLS as f32);
-            [x + aside, y + 0.7 * aside, height + if height == 0.0 { 0.0 } else { tilt * x }]
+            [x + aside, y, height + if height == 0.0 { 0.0 } else { tilt * x }]
         };
         let lower = (0..ROW * ROW).map(|i| point(i, 0.0, 0.0));
-        let upper = (0..ROW * ROW).map(|i| point(i, 0.002, height));
+        let upper = (0..ROW * ROW).map(|i| point(i, 0.752, height));
         Mesh::new("sheets", Positions::F32(lower.chain(upper).collect()), faces.clone()).expect("a mesh")
     });
     Body::moving(t0, t1).expect("a step")

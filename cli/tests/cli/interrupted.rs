@@ -71,7 +71,7 @@ fn rows_that_are_half_written_go() {
         if let Some(text) = before {
             std::fs::write(&csv, text).expect("written");
         }
-        let scene = ["detect", "--scene", "identical", "--triangles", "4000", "--out", &csv];
+        let scene = ["detect", "--scene", "identical", "--triangles", "1600", "--out", &csv];
         let program = start(&scene);
         // Until there is a part of the answer.
         let parent = Path::new(&csv).parent().expect("a folder");

@@ -178,11 +178,12 @@ fn difference(when: &str, found: &OwnRows, wanted: &OwnRows) -> Option<String> {
 
 #[test]
 fn other_bodies_change_no_row() {
-    let mut rows_found = 0;
+    // Every scene has a part of the queries, and every query a part of the scenes.
+    let (mut rows_found, part) = (0, support::cases(7, 1));
     for seed in 0..24 {
         let mut rng = SmallRng::seed_from_u64(seed);
         let (own, others) = (own(&mut rng), others(&mut rng));
-        for query in queries() {
+        for query in queries().into_iter().skip(seed as usize % part).step_by(part) {
             let difference = differs(&own, &others, query);
             assert_eq!(difference, None, "seed {seed}, {query:?}");
         }

@@ -19,7 +19,7 @@ use nearmiss_lab::scene;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 use support::asked::by;
-use support::{ask, engine, judged, machines, ways};
+use support::{ask, cases, engine, judged, machines, ways};
 
 /// A pair of features: four points at both ends of the step.
 pub type Ends = [[[f64; 3]; 2]; 4];
@@ -123,7 +123,7 @@ fn no_thick_pair_is_missed_or_late_or_falsely_certain() {
     for name in FAMILIES {
         let mut seen = [0; 4];
         let mut r = SmallRng::seed_from_u64(name.len() as u64);
-        for i in 0..60 {
+        for i in 0..cases(14, 60) {
             let features = [Features::VertexFace, Features::EdgeEdge][i % 2];
             let ends = family(&mut r, name);
             let at = |t: f64| Places::at(features, ends, t, [0.0; 4]).least().to_f64().sqrt();

@@ -130,13 +130,12 @@ fn isolate_underflow() {
     }
     let least = f64::from(f32::from_bits(1));
     let half = Exact::pow2(-150);
-    let found = Hunt { starts: 16, ..Hunt::new(72) }
-        .most::<f64>(|r| start(r, least), |x| ratio::<f64, f32>(x, &half));
+    let hunt = Hunt { starts: support::cases(5, 16), ..Hunt::new(72) };
+    let found = hunt.most::<f64>(|r| start(r, least), |x| ratio::<f64, f32>(x, &half));
     argued("ISOLATE_UNDERFLOW", "f64 in f32", &found, 72.0, Exact::of(f32::ISOLATE_UNDERFLOW).over(&half));
     let half = Exact::pow2(-1075);
     let least = f64::from_bits(1);
-    let found = Hunt { starts: 16, ..Hunt::new(72) }
-        .most::<f64>(|r| start(r, least), |x| ratio::<f64, f64>(x, &half));
+    let found = hunt.most::<f64>(|r| start(r, least), |x| ratio::<f64, f64>(x, &half));
     argued("ISOLATE_UNDERFLOW", "f64", &found, 72.0, Exact::of(f64::ISOLATE_UNDERFLOW).over(&half));
 }
 

@@ -9,6 +9,7 @@ use nearmiss_lab::oracle::near::{Places, distance_squared};
 use num_traits::ToPrimitive;
 use rand::Rng;
 use rand::rngs::SmallRng;
+use support::cases;
 
 const KINDS: [Features; 2] = [Features::VertexFace, Features::EdgeEdge];
 
@@ -118,7 +119,7 @@ fn beside(features: Features, x: &[f64]) -> f64 {
 #[test]
 fn the_error_of_a_parameter() {
     for features in KINDS {
-        let hunt = Hunt { starts: 12, ..Hunt::new(73) };
+        let hunt = Hunt { starts: cases(4, 12), steps: cases(500, 1_500), seed: 73 };
         let Found { ratio, input } = hunt.most::<f64>(|r| flat(r, features), |x| beside(features, x));
         println!("DISTANCE_WEIGHT, {features:?}: {ratio:.4} of the range");
         assert!((1.0 / 60.0..=1.0).contains(&ratio), "{features:?}: {ratio} by {input:?}");

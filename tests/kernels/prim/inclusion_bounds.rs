@@ -10,6 +10,7 @@ use num_rational::BigRational;
 use num_traits::{One, ToPrimitive, Zero};
 use rand::Rng;
 use rand::rngs::SmallRng;
+use support::cases;
 
 /// A coordinate: of plain size, of some other, near another, or zero.
 fn coordinate(r: &mut SmallRng, kind: usize) -> f64 {
@@ -38,7 +39,7 @@ fn corners<R: Real, S: Grid, const N: usize>(
     planted: f64,
 ) -> f64 {
     let (mut most, mut by) = (0f64, [0; 2]);
-    for i in 0..400 {
+    for i in 0..cases(80, 400) {
         let mut point = || Vec3(std::array::from_fn(|_| R::of(coordinate(r, i % 4))));
         let x: [Moving<R>; 4] = std::array::from_fn(|_| Moving { t0: point(), t1: point() });
         let m = build(x);

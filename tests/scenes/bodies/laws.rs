@@ -81,10 +81,10 @@ impl Next {
 
 #[test]
 fn rows_are_those_of_all_pairs_of_triangles() {
-    let mut rng = SmallRng::seed_from_u64(3);
+    let (mut rng, mut meeting) = (SmallRng::seed_from_u64(3), 0);
     for kinds in [Kinds::Rigid, Kinds::RigidAndFixed, Kinds::Deformable, Kinds::Mixed] {
         for (place, filters) in [(0.0, false), (0.0, true), (1e6, false)] {
-            let scene = scene(&mut rng, kinds, 14, place, filters);
+            let scene = scene(&mut rng, kinds, 11, place, filters);
             let mut detector = Detector::new(engine(), scene).expect("a detector");
             let mut all = [0; 2];
             for frame in 0..2 {
@@ -94,9 +94,11 @@ fn rows_are_those_of_all_pairs_of_triangles() {
                 let found = found.unwrap_or_else(|fault| panic!("{kinds:?} at {place}, {frame}: {fault}"));
                 all = [all[0] + found[0], all[1] + found[1]];
             }
-            assert!((filters || all[0] > 1) && all[1] > 40, "{kinds:?} at {place}, {filters}: {all:?}");
+            assert!(all[1] > 16, "{kinds:?} at {place}, {filters}: {all:?}");
+            meeting += all[0];
         }
     }
+    assert!(meeting > 3, "{meeting}");
 }
 
 #[test]

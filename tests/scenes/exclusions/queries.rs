@@ -2,6 +2,7 @@
 
 use super::law::differ;
 use super::*;
+use support::{cases, some_ways};
 
 /// How an answer differs from the law: its rows, the least time of an earliest query, and the count
 /// of pairs at the start.
@@ -41,9 +42,11 @@ const KINDS: [u32; 5] = [1, 2, 4, 8, 15];
 
 #[test]
 fn an_answer_is_the_one_without_exclusions_less_their_rows() {
+    // The first one has removed a body, and the second one has doubles.
+    let seeds = &[3, 1, 0, 2, 4, 5][..cases(2, 6)];
     for bits in KINDS {
         let mut left = vec![[0; 2]; queries().len()];
-        for seed in 0..6 {
+        for &seed in seeds {
             let scene = crumpled(seed, bits);
             for (query, left) in queries().into_iter().zip(&mut left) {
                 assert_eq!(fault(engine(), &scene, query), None, "kinds {bits}, seed {seed}, {query:?}");
@@ -55,7 +58,7 @@ fn an_answer_is_the_one_without_exclusions_less_their_rows() {
         for (query, [before, behind]) in queries().into_iter().zip(left) {
             let is_listed = query.kind() != QueryKind::Earliest;
             assert!(
-                !is_listed || behind > 40 && behind + 20 < before,
+                !is_listed || behind > 6 * seeds.len() && behind + 3 * seeds.len() < before,
                 "kinds {bits}, {query:?}: {before}, {behind}"
             );
         }
@@ -66,14 +69,14 @@ fn an_answer_is_the_one_without_exclusions_less_their_rows() {
 fn every_way_and_every_order_gives_one_answer() {
     for (seed, bits) in [(5, 15), (3, 3), (4, 12)] {
         let scene = crumpled(seed, bits);
-        for query in queries() {
+        for (turn, query) in (seed as usize..).zip(queries()) {
             let one = ask(engine(), &scene, query);
             let same = |found: &Contacts, what: &str| {
                 assert_eq!(found.rows, one.rows, "seed {seed}, {what}");
                 assert_eq!(found.starts_crossing, one.starts_crossing, "seed {seed}, {what}");
             };
             assert_eq!(fault(engine(), &scene, query), None, "seed {seed}, {query:?}");
-            for way in ways(query) {
+            for way in some_ways(query, turn) {
                 same(&ask(engine(), &scene, way), &format!("{way:?}"));
             }
             for order in ORDERS {

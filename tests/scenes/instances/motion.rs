@@ -1,7 +1,7 @@
 //! Queries of features: in a step, turning and straight, with and without a separation, the first
 //! contact, and near at rest. Everything reported is that of placed vertices, frame after frame.
 
-use super::alike::{FAR, WORLDS, World, scene};
+use super::alike::{FAR, WORLDS, World, scene, scene_of};
 use super::*;
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::research::{BroadPhase, DetectorExt};
@@ -101,7 +101,7 @@ fn steps_are_those_of_placed_vertices() {
         let mut rows = 0;
         for (ways, count) in kinds {
             let world = (size, place, 3.0);
-            let scene = scene(&mut rng, world, count, ways == Ways::Straight);
+            let scene = scene_of(12, &mut rng, world, count, ways == Ways::Straight);
             let mut both = Both::new(&engine(), &scene);
             for frame in 0..2 {
                 let all = steps(&mut rng, &scene, world, ways);
@@ -126,7 +126,7 @@ fn far_away_they_are_too() {
     for world in FAR {
         let mut rows = 0;
         for ways in [Ways::Straight, Ways::Any] {
-            let scene = scene(&mut rng, world, 4, false);
+            let scene = scene_of(8, &mut rng, world, 4, false);
             let mut both = Both::new(&engine(), &scene);
             moved(&mut both, &steps(&mut rng, &scene, world, ways));
             for query in [Query::continuous(), Query::near(0.1 * world.0)] {
@@ -141,7 +141,7 @@ fn far_away_they_are_too() {
 fn queries_in_between_change_nothing() {
     let mut rng = SmallRng::seed_from_u64(22);
     let world = WORLDS[0];
-    let scene = scene(&mut rng, world, 8, false);
+    let scene = scene_of(8, &mut rng, world, 8, false);
     let mut both = Both::new(&engine(), &scene);
     for frame in 0..3 {
         let all = steps(&mut rng, &scene, world, Ways::Any);

@@ -7,7 +7,7 @@ use nearmiss_lab::OneQueryOnSeveral;
 
 /// Spheres that all lie in one place until they get their poses, and those.
 fn scattered() -> (Scene, Vec<Pose>) {
-    let mesh = sphere(5, 0.45);
+    let mesh = sphere(4, 0.45);
     let mut rng = SmallRng::seed_from_u64(5);
     let mut scene = Scene::new();
     // In no order that neighbours have.

@@ -7,6 +7,7 @@ use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::research::KindExt;
 use nearmiss::research::StatsExt;
 use std::collections::BTreeSet;
+use support::cases;
 
 /// Queues so small that units spill in every round: rounds and lengths depend on the schedule.
 const SMALL: QueueShape =
@@ -124,11 +125,11 @@ fn queries() -> impl Iterator<Item = Query> {
 fn a_prepared_detector_is_submittable_on_any_schedule() {
     for query in queries() {
         // Blocks one after the other in any order; those of one kind also interleaved.
-        let mut ways = vec![(8, false)];
-        ways.extend((query.kind() == QueryKind::Near).then_some((12, true)));
+        let mut ways = vec![(cases(3, 8), false)];
+        ways.extend((query.kind() == QueryKind::Near).then_some((cases(4, 12), true)));
         for (seeds, interleaves) in ways {
             let mut seen = Seen::default();
-            for seed in 0..seeds {
+            for seed in 0..seeds as u64 {
                 let order = Mode::Sanitizer(Order::Shuffled(seed));
                 let emulator = Emulator::new(order, None).expect("threads");
                 let emulator = if interleaves { emulator.with_interleave(seed) } else { emulator };

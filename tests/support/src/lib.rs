@@ -2,6 +2,7 @@
 //! fuzz targets.
 #![allow(missing_docs, reason = "only tests read it")]
 
+mod amount;
 pub mod asked;
 pub mod brute;
 pub mod candidates;
@@ -17,6 +18,7 @@ pub mod solids;
 pub mod triangles;
 pub mod truth;
 
+pub use amount::{cases, some_ways};
 pub use data::data;
 
 use nearmiss::device::Backend;
