@@ -8,7 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 target=$(mkdir -p "${CARGO_TARGET_DIR:-target}" && cd "${CARGO_TARGET_DIR:-target}" && pwd)
 # As the tests have it: -p would choose other features of what others need, which is a second build of all.
-cargo build --locked --workspace --lib --bins --examples
+cargo build --locked --workspace --features cuda --lib --bins --examples
 strict=(-Wall -Wextra -Wpedantic -Werror -fsyntax-only)
 cc -x c -std=c99 "${strict[@]}" c/include/nearmiss.h 2>&1
 c++ -x c++ -std=c++11 "${strict[@]}" c/include/nearmiss.h 2>&1

@@ -42,7 +42,7 @@ trimesh=trimesh-$("$folder/user/bin/python" -c 'import trimesh; print(trimesh.__
 tar -xzf "$folder/$trimesh.tar.gz" -C "$folder"
 "$folder/user/bin/python" -m mypy --no-error-summary python/tests/typed.py
 # As the tests have it: -p would choose other features of what others need, which is a second build.
-cargo build --locked --workspace --lib --bins --examples
+cargo build --locked --workspace --features cuda --bins --examples
 export NEARMISS_PROGRAM=$target/debug/nearmiss
 NEARMISS_TRIMESH_TESTS=$folder/$trimesh/tests/test_collision.py \
     "$folder/user/bin/python" -m pytest -q -rs --durations=10 python

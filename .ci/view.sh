@@ -15,6 +15,6 @@ if (cd cli/view && node build.mjs --check "$planted/page.html.gz" 2>/dev/null); 
 fi
 
 target=$(realpath "${CARGO_TARGET_DIR:-target}")
-[ -n "${NEARMISS:-}" ] || cargo build --locked --workspace --lib --bins --examples
+[ -n "${NEARMISS:-}" ] || cargo build --locked --workspace --features cuda --lib --bins --examples
 cd cli/view
 NEARMISS=${NEARMISS:-$target/debug/nearmiss} node --test test/*.test.js
