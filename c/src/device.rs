@@ -75,8 +75,9 @@ pub extern "C" fn nearmiss_device_gpu(
 }
 
 /// A GPU by a context and a stream of the caller. All work goes to that stream, after earlier work.
-/// `context` is a `CUcontext`, or NULL for the current one of the thread. `stream` is a `CUstream`
-/// or a `cudaStream_t`, or NULL for the default stream, which a graph cannot capture.
+/// `context` is a `CUcontext`, or NULL for that of the stream; of a default stream it is the current
+/// one of the thread. `stream` is a `CUstream` or a `cudaStream_t`, or NULL for the default stream,
+/// which a graph cannot capture.
 ///
 /// # Safety
 /// The stream is of that context, and both outlive the device and all detectors made with it.

@@ -13,8 +13,9 @@ pub type Owner = Arc<dyn Any + Send + Sync>;
 
 impl Device {
     /// A GPU by a context and a stream of the caller. All work goes to that stream, after its
-    /// earlier work; no other context is made. A null context is the one that the thread is bound
-    /// to. A null stream is the default one, which cannot be captured.
+    /// earlier work; no other context is made. A null context is that of the stream; of a default
+    /// stream it is the one that the thread is bound to. A null stream is the default one, which cannot
+    /// be captured.
     ///
     /// # Errors
     /// As for [`Device::gpu`].

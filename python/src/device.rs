@@ -15,8 +15,8 @@ const MOST_THREADS: i64 = 1024;
 /// - `backend`: "auto" (a GPU if there is one, else the CPU), "cpu" or "cuda".
 /// - `threads`: threads of the CPU, 1 to 1024, at most one a processor. Default: all.
 /// - `gpu`: number of a GPU. It gets a stream of its own.
-/// - `stream`: your stream, on the GPU that this thread is bound to: a stream of torch or cupy, an
-///   object with __cuda_stream__, or a handle (0: the default stream). All work goes there. It must
+/// - `stream`: your stream, of any GPU: a stream of torch or cupy, an object with __cuda_stream__, or a
+///   handle (0: the default stream of the GPU that this thread is bound to). All work goes there. It must
 ///   outlive the device; its context also every answer and every array of one.
 /// - `memory_limit`: most bytes of device memory to take, at least 1. Default: all there are.
 ///
@@ -56,7 +56,7 @@ impl Device {
         if (on_gpu && (backend == Backend::Cpu || threads.is_some())) || (gpu.is_some() && stream.is_some()) {
             return Err(choice(
                 "gpu, stream, threads and backend \"cpu\" exclude each other",
-                "give threads for a CPU, gpu or stream for a GPU; a stream is of the GPU that the thread is bound to",
+                "give threads for a CPU, gpu or stream for a GPU",
             ));
         }
         if backend == Backend::Cuda && threads.is_some() {

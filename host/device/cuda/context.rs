@@ -1,7 +1,7 @@
 //! A GPU's context. A thread is bound to it for every call of the driver.
 
 use super::driver::{Driver, Refusal, answer, driver, refused};
-use super::types::{self, CUcontext, CUdevice, CUdevice_attribute, CUstreamCaptureMode};
+use super::types::{self, CUcontext, CUdevice, CUdevice_attribute, CUstream, CUstreamCaptureMode};
 use crate::device::Owner;
 use crate::error::Error;
 use std::ffi::c_int;
@@ -69,17 +69,27 @@ impl Gpu {
         Ok(Arc::new(Context { gpu: self, handle, is_borrowed: false, owner: None }))
     }
 
-    /// The GPU of a context of the caller, or of the one that this thread is bound to; and that
-    /// context, which keeps its owner.
+    /// The GPU of a context of the caller, and that context, which keeps its owner. Null is the
+    /// context of the stream; of a default stream it is the one that this thread is bound to.
     ///
     /// # Safety
-    /// The context is one of the driver's, or null. It lives as long as its owner or, without one,
+    /// Each is one of the driver's, or null. The context lives as long as its owner or, without one,
     /// outlives the result.
-    pub unsafe fn of(context: CUcontext, owner: Option<Owner>) -> Result<(Gpu, Arc<Context>), Error> {
+    pub unsafe fn of(
+        context: CUcontext,
+        stream: CUstream,
+        owner: Option<Owner>,
+    ) -> Result<(Gpu, Arc<Context>), Error> {
         let driver = driver()?;
         // SAFETY: `cuInit` may be called at any time.
         answer(unsafe { (driver.cuInit)(0) }).map_err(refused("starting the CUDA driver"))?;
         let mut handle = context;
+        let is_default = [0, types::CU_STREAM_LEGACY, types::CU_STREAM_PER_THREAD].contains(&stream.addr());
+        if handle.is_null() && !is_default {
+            // SAFETY: the driver is started, the stream lives, and the driver writes one handle.
+            answer(unsafe { (driver.cuStreamGetCtx)(stream, &mut handle) })
+                .map_err(refused("querying the context of a stream"))?;
+        }
         if handle.is_null() {
             // SAFETY: the driver is started, and writes one handle.
             answer(unsafe { (driver.cuCtxGetCurrent)(&mut handle) })

@@ -135,6 +135,7 @@ functions! {
         cuCtxSetCurrent(CUcontext);
         cuCtxGetDevice(*mut CUdevice);
         cuStreamCreate(*mut CUstream, c_uint);
+        cuStreamGetCtx(CUstream, *mut CUcontext);
         cuStreamSynchronize(CUstream);
         cuStreamDestroy_v2(CUstream);
         cuStreamBeginCapture_v2(CUstream, CUstreamCaptureMode);

@@ -101,7 +101,7 @@ impl Cuda {
         owner: Option<Owner>,
     ) -> Result<Self, Error> {
         // SAFETY: the caller's promise.
-        let (gpu, context) = unsafe { Gpu::of(context, owner) }?;
+        let (gpu, context) = unsafe { Gpu::of(context, stream, owner) }?;
         // SAFETY: as above.
         let stream = unsafe { Stream::borrow(&context, stream) };
         Self::with(gpu, context, stream)

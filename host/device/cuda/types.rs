@@ -48,6 +48,9 @@ pub const CU_EVENT_WAIT_DEFAULT: u32 = 0;
 pub const CU_STREAM_CAPTURE_MODE_THREAD_LOCAL: CUstreamCaptureMode = 1;
 pub const CU_STREAM_CAPTURE_STATUS_NONE: CUstreamCaptureStatus = 0;
 pub const CU_STREAM_NON_BLOCKING: u32 = 1;
+/// Handles of default streams; a macro of the driver's header.
+pub const CU_STREAM_LEGACY: usize = 1;
+pub const CU_STREAM_PER_THREAD: usize = 2;
 pub const CU_JIT_MAX_REGISTERS: CUjit_option = 0;
 pub const CU_JIT_GENERATE_LINE_INFO: CUjit_option = 13;
 
