@@ -1,11 +1,13 @@
 //! One scene on several devices: each has all positions, and finds its share of the tiles.
 
 mod cuts;
+mod division;
 mod edits;
 mod first;
 mod interrupted;
 mod left_out;
 mod lent;
+mod submit;
 mod tiles;
 
 use crate::contacts::{Answer, Contacts, Located, Note};
@@ -13,16 +15,12 @@ use crate::detector::Detector;
 use crate::device::{Device, Interrupt};
 use crate::error::Error;
 use crate::pipeline::Share;
-use crate::pipeline::wear::Wear;
 use crate::query::{BroadPhase, Query, Rebuild, TypedQuery};
 use crate::scene::{BodyId, Motion, Scene};
-use cuts::cuts;
+pub use division::DeviceShare;
+use division::Division;
 use lent::Copies;
 use std::time::Instant;
-
-/// A frame is uneven if the slowest share takes more than this many times the mean. The next frame
-/// is then divided again, by the cost of each tile. Equal frames differ by less, some hundredths.
-const UNEVEN: f64 = 1.05;
 
 /// One scene on several devices of one host. Each has all positions, finds the pairs of its share
 /// of the tiles and tests them as one device does. The answers are merged in canonical order. The
@@ -51,37 +49,6 @@ pub struct MultiDetector {
     copies: Vec<Copies>,
     /// Handle that ends the work of all devices.
     interrupt: Interrupt,
-}
-
-/// Division of a query's work.
-struct Division {
-    /// Shape of the query.
-    shape: Query,
-    shares: Vec<Share>,
-    /// Milliseconds of the last frame, by each device's own clock.
-    ms: Vec<f64>,
-    wear: Wear,
-}
-
-impl Division {
-    /// Equal numbers of tiles for `count` devices.
-    fn even(shape: Query, count: usize) -> Division {
-        let part = |k: usize| k as u64 * Share::ALL / count as u64;
-        let shares = (0..count).map(|k| Share { from: part(k), to: part(k + 1) }).collect();
-        Division { shape, shares, ms: vec![0.0; count], wear: Wear::default() }
-    }
-}
-
-/// Work of a device in a frame.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct DeviceShare {
-    /// Name of the machine.
-    pub device: String,
-    /// Its part of the tiles, 0 to 1, in the last frame.
-    pub tiles: f64,
-    /// Milliseconds of that frame, by its own clock; 0 before the first frame.
-    pub ms: f64,
 }
 
 impl MultiDetector {
@@ -245,21 +212,6 @@ impl MultiDetector {
         self.parts[0].largest_tolerance()
     }
 
-    /// Returns each device's part of the last frame of a query; empty before the first frame.
-    pub fn shares(&self, query: &Query) -> Vec<DeviceShare> {
-        let shape = self.divisible(*query).ok().map(|query| query.shape());
-        let division = self.divisions.iter().find(|division| shape == Some(division.shape));
-        let one = |((part, share), &ms): ((&Detector, &Share), &f64)| DeviceShare {
-            device: part.machine(),
-            tiles: (share.to - share.from) as f64 / Share::ALL as f64,
-            ms,
-        };
-        let of = |division: &Division| {
-            self.parts.iter().zip(&division.shares).zip(&division.ms).map(one).collect()
-        };
-        division.map_or_else(Vec::new, of)
-    }
-
     /// Returns for each share the number of tiles beyond its own that it met in a query's last
     /// frame. A tile has 32 triangles. A device without all positions would need them sent. Reads
     /// all pairs of tiles back, for measurements. Only the last slice of a share is counted.
@@ -279,23 +231,12 @@ impl MultiDetector {
             self.renew()?;
         }
         self.divide(at, &query)?;
-        let mut answers = self.answers(&query)?;
+        let answers = self.answers(&query)?;
         let division = &mut self.divisions[at];
         division.ms = answers.iter().map(|answer| answer.stats.stages.total).collect();
-        answers.iter_mut().for_each(|answer| answer.query = whole);
-        let mut whole = self.merged(answers)?;
+        let whole = self.whole(answers, whole, start)?;
         self.divisions[at].wear.add(whole.stats.steps);
-        whole.stats.stages.wall = start.elapsed().as_secs_f64() * 1e3;
         Ok(whole)
-    }
-
-    /// Returns the index of a query's division, which is even at first.
-    fn division(&mut self, query: &Query) -> usize {
-        let shape = query.shape();
-        self.divisions.iter().position(|division| division.shape == shape).unwrap_or_else(|| {
-            self.divisions.push(Division::even(shape, self.parts.len()));
-            self.divisions.len() - 1
-        })
     }
 
     /// Calls a function on every device, at the same time unless in turn. All devices run it, even
@@ -307,16 +248,25 @@ impl MultiDetector {
         self.each_numbered(|_, part| what(part))
     }
 
+    /// Calls a function on every device, one after another. All devices run it, even if one fails.
+    fn one_by_one<T>(
+        &mut self,
+        what: impl Fn(usize, &mut Detector) -> Result<T, Error>,
+    ) -> Result<Vec<T>, Error> {
+        let parts = self.parts.iter_mut().enumerate();
+        let done: Vec<_> = parts.map(|(number, part)| what(number, part)).collect();
+        done.into_iter().collect()
+    }
+
     /// As [`MultiDetector::each`], with the number of the device.
     fn each_numbered<T: Send>(
         &mut self,
         what: impl Fn(usize, &mut Detector) -> Result<T, Error> + Sync,
     ) -> Result<Vec<T>, Error> {
-        let parts = self.parts.iter_mut().enumerate();
-        if self.in_turn || parts.len() == 1 {
-            let done: Vec<_> = parts.map(|(number, part)| what(number, part)).collect();
-            return done.into_iter().collect();
+        if self.in_turn || self.parts.len() == 1 {
+            return self.one_by_one(what);
         }
+        let parts = self.parts.iter_mut().enumerate();
         let lost = |_| Err(Error::Bug { what: "a device's thread has panicked".into() });
         std::thread::scope(|scope| {
             let what = &what;
@@ -325,28 +275,6 @@ impl MultiDetector {
             let done: Vec<_> = threads.into_iter().map(|thread| thread.join().unwrap_or_else(lost)).collect();
             done.into_iter().collect()
         })
-    }
-
-    /// Gives every device its share, divided again if the last frame was uneven.
-    fn divide(&mut self, at: usize, query: &Query) -> Result<(), Error> {
-        let Division { shares, ms, .. } = &mut self.divisions[at];
-        let (sum, most) = (ms.iter().sum::<f64>(), ms.iter().copied().fold(0.0, f64::max));
-        if most * ms.len() as f64 > UNEVEN * sum {
-            let mut costs: Vec<f64> = Vec::new();
-            for (part, ms) in self.parts.iter_mut().zip(&*ms) {
-                let work = part.tile_work(query)?;
-                let all: u64 = work.iter().sum();
-                costs.resize(costs.len().max(work.len()), 0.0);
-                let a_unit = ms / all.max(1) as f64;
-                costs.iter_mut().zip(&work).for_each(|(cost, &work)| *cost += work as f64 * a_unit);
-            }
-            let cuts = cuts(&costs, self.parts.len());
-            for (share, ends) in shares.iter_mut().zip(cuts.windows(2)) {
-                *share = Share { from: ends[0], to: ends[1] };
-            }
-        }
-        self.parts.iter_mut().zip(shares).for_each(|(part, share)| part.take(*share));
-        Ok(())
     }
 }
 

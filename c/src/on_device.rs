@@ -166,6 +166,33 @@ impl NearmissDetector {
         refused(what, "call nearmiss_detector_collect, or change groups and masks")
     }
 
+    /// An answer as C sees it.
+    fn shown(&mut self, found: DeviceAnswer) -> Result<NearmissDeviceAnswer, Error> {
+        let DeviceAnswer { entries, lists, is_ordered, status, earliest, edges, starts, .. } = found;
+        let entries = match entries {
+            Entries::TrianglePairs => NearmissEntries::NEARMISS_TRIANGLE_PAIRS,
+            Entries::Contacts => NearmissEntries::NEARMISS_CONTACTS,
+            Entries::NearPairs => NearmissEntries::NEARMISS_NEAR_PAIRS,
+            Entries::Nearest => NearmissEntries::NEARMISS_NEAREST,
+            other => return Err(Error::Bug { what: format!("entries {other:?} without a name in C") }),
+        };
+        let mut both = [NearmissDeviceList::default(); 2];
+        both.iter_mut().zip(&lists).for_each(|(to, list)| *to = (*list).into());
+        let starts = self.keep(starts);
+        Ok(NearmissDeviceAnswer {
+            entries,
+            list_count: lists.len().min(2) as u32,
+            lists: both,
+            is_ordered,
+            has_earliest: earliest.is_some(),
+            status,
+            earliest: earliest.unwrap_or(0),
+            edges: edges.into(),
+            starts: starts.as_ptr(),
+            start_count: starts.len(),
+        })
+    }
+
     /// Keeps a list that the caller reads until the next preparation.
     fn keep(&mut self, starts: Vec<[u32; 3]>) -> &[[u32; 3]] {
         let at = self.starts.iter().position(|kept| *kept == starts).unwrap_or_else(|| {
@@ -193,31 +220,39 @@ pub unsafe extern "C" fn nearmiss_detector_on_device(
         let to = given(answer, "answer")?;
         // SAFETY: the caller's promise.
         let query = unsafe { given(query, "query")?.query() }?;
-        let found = own.detector.one("an answer in device memory")?.on_device(&query);
+        let found = own.detector.one("one answer in device memory")?.on_device(&query);
         let found = found.ok_or_else(|| own.not_on_device(&query))?;
-        let DeviceAnswer { entries, lists, is_ordered, status, earliest, edges, starts, .. } = found;
-        let entries = match entries {
-            Entries::TrianglePairs => NearmissEntries::NEARMISS_TRIANGLE_PAIRS,
-            Entries::Contacts => NearmissEntries::NEARMISS_CONTACTS,
-            Entries::NearPairs => NearmissEntries::NEARMISS_NEAR_PAIRS,
-            Entries::Nearest => NearmissEntries::NEARMISS_NEAREST,
-            other => return Err(Error::Bug { what: format!("entries {other:?} without a name in C") }),
-        };
-        let mut both = [NearmissDeviceList::default(); 2];
-        both.iter_mut().zip(&lists).for_each(|(to, list)| *to = (*list).into());
-        let starts = own.keep(starts);
-        to.write(NearmissDeviceAnswer {
-            entries,
-            list_count: lists.len().min(2) as u32,
-            lists: both,
-            is_ordered,
-            has_earliest: earliest.is_some(),
-            status,
-            earliest: earliest.unwrap_or(0),
-            edges: edges.into(),
-            starts: starts.as_ptr(),
-            start_count: starts.len(),
-        });
+        to.write(own.shown(found)?);
+        Ok(())
+    })
+}
+
+/// The same for a detector on several devices: the answer of each to its share, in its memory, behind
+/// the work of its stream. Of an earliest query each has the time of its share. As many answers as the
+/// detector has devices are written, in their order. A detector on one device has one.
+///
+/// Fails as `nearmiss_detector_on_device` does, and for another number of answers.
+///
+/// # Safety
+/// There is room for so many answers. The names of the query are texts or NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nearmiss_detector_on_each_device(
+    detector: Option<&mut NearmissDetector>,
+    query: Option<&NearmissQuery>,
+    answers: *mut NearmissDeviceAnswer,
+    answer_count: usize,
+    error: Option<&mut MaybeUninit<NearmissError>>,
+) -> NearmissCode {
+    NearmissDetector::work(detector, error, |own| {
+        // SAFETY: the caller's promise.
+        let query = unsafe { given(query, "query")?.query() }?;
+        own.one_a_device(answer_count, "answers", answers.is_null())?;
+        let found = own.detector.on_device(&query).ok_or_else(|| own.not_on_device(&query))?;
+        for (at, found) in found.into_iter().enumerate() {
+            let shown = own.shown(found)?;
+            // SAFETY: there is room for so many, as the caller promises.
+            unsafe { answers.add(at).write(shown) };
+        }
         Ok(())
     })
 }

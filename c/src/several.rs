@@ -6,8 +6,8 @@ use crate::error::{NearmissCode, NearmissError, given, make, refused};
 use crate::query::NearmissQuery;
 use crate::rows::items;
 use crate::scene::NearmissScene;
-use nearmiss::contacts::{First, Located, Note, RowList};
-use nearmiss::scene::{BodyId, Exclusions, Motion, Scene, Thickness};
+use nearmiss::contacts::{DeviceAnswer, First, Located, Note, RowList};
+use nearmiss::scene::{BodyId, DeviceMotion, Exclusions, Motion, Scene, Thickness};
 use nearmiss::words::counted;
 use nearmiss::{Answer, Body, Contact, Contacts, Detector, Error, Interrupt, MultiDetector, Query};
 use std::mem::MaybeUninit;
@@ -130,11 +130,51 @@ impl Machines {
     }
 
     pub(crate) fn is_prepared(&self) -> bool {
-        matches!(self, Machines::One(own) if own.is_prepared())
+        both!(self, own => own.is_prepared())
+    }
+
+    pub(crate) fn prepare(
+        &mut self,
+        motions: &[(BodyId, DeviceMotion)],
+        queries: &[Query],
+    ) -> Result<(), Error> {
+        both!(self, own => own.prepare(motions, queries))
+    }
+
+    /// The answer on each device.
+    pub(crate) fn on_device(&self, query: &Query) -> Option<Vec<DeviceAnswer>> {
+        match self {
+            Machines::One(own) => own.on_device(query).map(|answer| vec![answer]),
+            Machines::Several(own) => own.on_device(query),
+        }
+    }
+
+    pub(crate) fn submit(&mut self) -> Result<(), Error> {
+        both!(self, own => own.submit())
+    }
+
+    pub(crate) fn collect(&mut self, query: &Query) -> Result<Contacts, Error> {
+        both!(self, own => own.collect(query))
     }
 
     pub(crate) fn download_positions(&mut self) -> Result<(), Error> {
         both!(self, own => own.download_positions())
+    }
+}
+
+impl NearmissDetector {
+    /// Checks that there is room for one item a device.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] with the plural of the items.
+    pub(crate) fn one_a_device(&self, count: usize, items: &str, is_null: bool) -> Result<(), Error> {
+        let devices = self.devices.len();
+        if count != devices {
+            let devices = counted(devices as u64, "device", "devices");
+            let what = format!("detector has {devices}, got room for {count} {items}");
+            return Err(refused(what, "give room for one a device"));
+        }
+        given((!is_null).then_some(()), items).map(drop)
     }
 }
 
@@ -152,11 +192,12 @@ pub struct NearmissShare {
 /// positions and finds the pairs of its share; answers and hashes are those of one device. `devices`
 /// points to `device_count` handles, at least one. See `nearmiss_detector_create`.
 ///
-/// The detector takes the calls of any other, except `nearmiss_detector_prepare`, `_submit`,
-/// `_collect`, `_on_device`, `_plan` and `_update_poses`; distances, pairs of bodies and trees are
-/// not divided. These fail with `NEARMISS_INVALID_ARGUMENT`, and so do motions in memory of a GPU if
-/// a device is a CPU. Motions may be in memory of any of the GPUs, behind the work of its stream;
-/// all devices have read them when the call returns.
+/// The detector takes the calls of any other, except `nearmiss_detector_on_device`, `_plan` and
+/// `_update_poses`; distances, pairs of bodies and trees are not divided. These fail with
+/// `NEARMISS_INVALID_ARGUMENT`, and so do motions in memory of a GPU if a device is a CPU. Motions
+/// may be in memory of any of the GPUs, behind the work of its stream. All devices have read them
+/// when `nearmiss_detector_update` returns, and before what follows a submission on that stream. No
+/// CUDA graph can capture a submission.
 ///
 /// # Safety
 /// So many handles are there. One thread at a time uses each device.
@@ -201,21 +242,13 @@ pub unsafe extern "C" fn nearmiss_detector_shares(
     NearmissDetector::work(detector, error, |own| {
         // SAFETY: the caller's promise.
         let query = unsafe { given(query, "query")?.query() }?;
+        own.one_a_device(share_count, "shares", shares.is_null())?;
         let Machines::Several(several) = &own.detector else {
             let advice = "make a detector by nearmiss_detector_create_on_several";
             return Err(refused("shares of a detector on one device", advice));
         };
-        let count = own.devices.len();
-        if share_count != count {
-            let what = format!(
-                "detector has {}, got room for {share_count} shares",
-                counted(count as u64, "device", "devices")
-            );
-            return Err(refused(what, "give room for one share a device"));
-        }
-        given((!shares.is_null()).then_some(()), "shares")?;
         let found = several.shares(&query);
-        for at in 0..count {
+        for at in 0..share_count {
             let share = found.get(at).map_or((0.0, 0.0), |share| (share.tiles, share.ms));
             // SAFETY: there is room for so many, as the caller promises.
             unsafe { shares.add(at).write(NearmissShare { tiles: share.0, ms: share.1 }) };

@@ -37,7 +37,7 @@ pub unsafe extern "C" fn nearmiss_detector_prepare(
         let queries = queries.collect::<Result<Vec<Query>, Error>>()?;
         // SAFETY: the caller's promise, twice.
         let motions = unsafe { own.motions(motions, motion_count, |motion| motion.device_motion()) }?;
-        let prepared = own.detector.one("a submission")?.prepare(&motions, &queries);
+        let prepared = own.detector.prepare(&motions, &queries);
         // A call that was refused before it changed anything leaves the earlier preparation.
         if prepared.is_ok() || !own.detector.is_prepared() {
             (own.prepared, own.starts) = (Vec::new(), Vec::new());
@@ -70,7 +70,7 @@ pub extern "C" fn nearmiss_detector_submit(
     detector: Option<&mut NearmissDetector>,
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
-    NearmissDetector::work(detector, error, |own| own.detector.one("a submission")?.submit())
+    NearmissDetector::work(detector, error, |own| own.detector.submit())
 }
 
 /// Waits for the last submission, or for the last launch of its recording, and copies the answer to
@@ -90,6 +90,6 @@ pub unsafe extern "C" fn nearmiss_detector_collect(
     NearmissDetector::answer(detector, answer, error, |own| {
         // SAFETY: the caller's promise.
         let query = unsafe { given(query, "query")?.query() }?;
-        own.detector.one("a submission")?.collect(&query)
+        own.detector.collect(&query)
     })
 }

@@ -37,6 +37,7 @@ use portion::Portion;
 use question::Question;
 use resident::Resident;
 use std::sync::Arc;
+pub(crate) use submit::check_submission;
 use thick::Thick;
 
 /// A scene on a device, which answers queries.

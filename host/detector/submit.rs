@@ -38,11 +38,11 @@ fn until_whole(mut round: impl FnMut() -> Result<bool, Error>) -> Result<(), Err
     })
 }
 
-/// Checks that there is a query, and that no two have one shape.
+/// Checks that there is a query, that each can be submitted, and that no two have one shape.
 ///
 /// # Errors
 /// [`Error::InvalidArgument`].
-fn check_shapes(queries: &[Query]) -> Result<(), Error> {
+pub(crate) fn check_submission(queries: &[Query]) -> Result<(), Error> {
     if queries.is_empty() {
         return Err(Error::InvalidArgument {
             what: "a submission must have at least one query, got none".into(),
@@ -60,7 +60,8 @@ fn check_shapes(queries: &[Query]) -> Result<(), Error> {
             });
         }
     }
-    Ok(())
+    queries.iter().try_for_each(Query::check)?;
+    queries.iter().try_for_each(without_bodies)
 }
 
 /// Refuses a query of pairs of bodies: its rows are made on the host.
@@ -99,9 +100,7 @@ impl Detector {
     }
 
     fn prepared(&mut self, motions: &[(BodyId, DeviceMotion)], queries: &[Query]) -> Result<(), Error> {
-        check_shapes(queries)?;
-        queries.iter().try_for_each(Query::check)?;
-        queries.iter().try_for_each(without_bodies)?;
+        check_submission(queries)?;
         let given: Vec<(BodyId, Motion)> =
             motions.iter().map(|&(id, motion)| (id, Motion::OnDevice(motion))).collect();
         let in_motion = queries.iter().find(|query| !query.kind().is_at_rest());

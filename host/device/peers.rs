@@ -21,6 +21,19 @@ impl Device {
         }
     }
 
+    /// Puts what follows on this one's stream after all work so far of another GPU's stream. The host
+    /// does not wait.
+    ///
+    /// # Errors
+    /// [`Error::Device`] with the driver's text.
+    pub(crate) fn follow(&self, other: &Device) -> Result<(), Error> {
+        match (&*self.machine, &*other.machine) {
+            #[cfg(feature = "cuda")]
+            (Machine::Cuda(own), Machine::Cuda(other)) => own.follow(other),
+            _ => Err(Error::Bug { what: "a stream of another machine".into() }),
+        }
+    }
+
     /// Copies bytes from another GPU's memory to the start of a buffer, after all work of this one's
     /// stream.
     ///

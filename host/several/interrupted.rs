@@ -5,6 +5,8 @@ use crate::contacts::{Contacts, Keep};
 use crate::device::Interrupt;
 use crate::device::emulator::Looks;
 use crate::error::Error;
+use crate::query::Query;
+use std::time::Instant;
 
 impl MultiDetector {
     /// As [`Detector::interrupter`](crate::Detector::interrupter): one handle for all devices. It
@@ -26,13 +28,21 @@ impl MultiDetector {
         done
     }
 
-    /// Merges the answers of all devices.
+    /// Merges the answers of all devices to a query that began at `start`.
     ///
     /// # Errors
     /// [`Error::Interrupted`].
-    pub(super) fn merged(&self, answers: Vec<Contacts>) -> Result<Contacts, Error> {
+    pub(super) fn whole(
+        &self,
+        mut answers: Vec<Contacts>,
+        query: Query,
+        start: Instant,
+    ) -> Result<Contacts, Error> {
+        answers.iter_mut().for_each(|answer| answer.query = query);
         let looks = Looks::new(Some(&self.interrupt));
         let keep: Keep = &|bytes, fill| self.parts[0].device().keep_filled(bytes, fill);
-        Contacts::merged(answers, f64::max, keep, &looks)
+        let mut whole = Contacts::merged(answers, f64::max, keep, &looks)?;
+        whole.stats.stages.wall = start.elapsed().as_secs_f64() * 1e3;
+        Ok(whole)
     }
 }

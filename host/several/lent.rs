@@ -6,10 +6,23 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::pipeline::purpose;
 use crate::scene::{BodyId, DeviceRows, Motion};
+use std::collections::BTreeSet;
 
-/// Copies of other GPUs' memory on one, by their place in an update. Later updates use them again.
+/// Copies of other GPUs' memory on one device. Later updates use their buffers again.
 #[derive(Default)]
-pub(super) struct Copies(Vec<Option<Buffer<u64>>>);
+pub(super) struct Copies {
+    buffers: Vec<Option<Buffer<u64>>>,
+    /// Copies of the last update, one for each of the first buffers.
+    transfers: Vec<Transfer>,
+}
+
+/// A copy of another GPU's memory.
+struct Transfer {
+    /// Index of the device that has the memory.
+    owner: usize,
+    address: u64,
+    bytes: usize,
+}
 
 /// Motions as one device reads them.
 type Motions<'a> = Vec<(BodyId, Motion<'a>)>;
@@ -31,12 +44,35 @@ impl MultiDetector {
             let what = format!("positions of body {first} in device memory, for a GPU and a CPU");
             return Err(refused(&what, "give positions in host memory, or leave the CPU out"));
         }
+        // Submissions read the same buffers.
+        self.unprepare();
         let devices: Vec<Device> = self.parts.iter().map(|part| part.device().clone()).collect();
         // One of them has the rows; the others copy when it has written them.
         devices.iter().try_for_each(Device::wait)?;
         self.copies.resize_with(devices.len(), Copies::default);
         let each = devices.iter().zip(&mut self.copies);
-        each.map(|(device, copies)| copies.motions(device, &devices, motions)).collect()
+        let read = |(device, copies): (&Device, &mut Copies)| {
+            let lent = copies.motions(device, &devices, motions)?;
+            copies.copy(device, &devices)?;
+            Ok(lent)
+        };
+        each.map(read).collect()
+    }
+
+    /// Copies the memory of the last update again: after what its GPUs' streams did so far, and
+    /// before what they do next. The host does not wait.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    pub(super) fn copy_again(&mut self) -> Result<(), Error> {
+        let devices: Vec<Device> = self.parts.iter().map(|part| part.device().clone()).collect();
+        for (device, copies) in devices.iter().zip(&mut self.copies) {
+            let owners: BTreeSet<usize> = copies.transfers.iter().map(|transfer| transfer.owner).collect();
+            owners.iter().try_for_each(|&owner| device.follow(&devices[owner]))?;
+            copies.copy(device, &devices)?;
+            owners.iter().try_for_each(|&owner| devices[owner].follow(device))?;
+        }
+        Ok(())
     }
 }
 
@@ -48,23 +84,21 @@ impl Copies {
         devices: &[Device],
         motions: &[(BodyId, Motion<'a>)],
     ) -> Result<Motions<'a>, Error> {
-        let mut at = 0;
+        self.transfers.clear();
         let mut lent = motions.to_vec();
         for (id, input) in &mut lent {
             if let Motion::OnDevice(motion) = input {
                 for (rows, width) in motion.rows_mut() {
-                    *rows = self.rows(at, *id, device, devices, (*rows, width))?;
-                    at += 1;
+                    *rows = self.rows(*id, device, devices, (*rows, width))?;
                 }
             }
         }
         Ok(lent)
     }
 
-    /// Returns rows as `device` reads them: where they are, or in the copy with that index.
+    /// Returns rows as `device` reads them: where they are, or in a buffer that gets a copy.
     fn rows(
         &mut self,
-        at: usize,
         id: BodyId,
         device: &Device,
         devices: &[Device],
@@ -75,21 +109,30 @@ impl Copies {
         if owner.is_none() || owner == device.ordinal() {
             return Ok(rows);
         }
-        let Some(owner) = devices.iter().find(|other| other.ordinal() == owner) else {
+        let Some(at) = devices.iter().position(|other| other.ordinal() == owner) else {
             let what = format!("positions of body {id} are in memory of GPU {}", owner.unwrap_or_default());
             return Err(refused(&what, "put them on a device of the detector"));
         };
-        let words = bytes.div_ceil(size_of::<u64>());
-        self.0.resize_with(self.0.len().max(at + 1), || None);
+        let (words, place) = (bytes.div_ceil(size_of::<u64>()), self.transfers.len());
+        self.transfers.push(Transfer { owner: at, address: rows.address(), bytes });
+        self.buffers.resize_with(self.buffers.len().max(place + 1), || None);
         // One that is too short is freed before another is made.
-        let copy = match self.0[at].take().filter(|copy| copy.len() >= words) {
-            Some(copy) => copy,
+        let buffer = match self.buffers[place].take().filter(|buffer| buffer.len() >= words) {
+            Some(buffer) => buffer,
             None => device.of(purpose::COPIES).buffer(words)?,
         };
-        let copy = self.0[at].insert(copy);
-        // SAFETY: the maker of the rows promised that a device of the detector has them while work
-        // may read them: the owner, as its driver says. All of its work was waited for.
-        unsafe { device.copy_of_other(owner, rows.address(), bytes, copy) }?;
-        Ok(rows.copied_to(copy.span().addr()))
+        Ok(rows.copied_to(self.buffers[place].insert(buffer).span().addr()))
+    }
+
+    /// Copies other GPUs' memory, on the stream of `device`. The owners have written it before.
+    fn copy(&mut self, device: &Device, devices: &[Device]) -> Result<(), Error> {
+        for (transfer, buffer) in self.transfers.iter().zip(self.buffers.iter_mut().flatten()) {
+            let owner = &devices[transfer.owner];
+            // SAFETY: the maker of the rows promised that a device of the detector has them while
+            // work may read them: the owner, as its driver says. All work that wrote them was
+            // waited for, by the host or by the stream of the copy.
+            unsafe { device.copy_of_other(owner, transfer.address, transfer.bytes, buffer) }?;
+        }
+        Ok(())
     }
 }

@@ -82,10 +82,37 @@ impl Current {
     }
 }
 
+/// A detector on one device, or on several.
+pub trait Detects {
+    fn is_prepared(&self) -> bool;
+    fn scene(&self) -> &Scene;
+}
+
+impl Detects for nearmiss::Detector {
+    fn is_prepared(&self) -> bool {
+        nearmiss::Detector::is_prepared(self)
+    }
+
+    fn scene(&self) -> &Scene {
+        nearmiss::Detector::scene(self)
+    }
+}
+
+impl Detects for nearmiss::MultiDetector {
+    fn is_prepared(&self) -> bool {
+        nearmiss::MultiDetector::is_prepared(self)
+    }
+
+    fn scene(&self) -> &Scene {
+        nearmiss::MultiDetector::scene(self)
+    }
+}
+
 /// A detector that one thread at a time uses.
-pub struct Asked {
-    pub detector: nearmiss::Detector,
-    is_gpu: bool,
+pub struct Asked<D = nearmiss::Detector> {
+    pub detector: D,
+    /// Whether the device may still read arrays when a call has ended.
+    reads_later: bool,
     current: Current,
     /// Counts what may move the answer that lies on the device.
     pub asked: u64,
@@ -97,11 +124,11 @@ pub struct Asked {
     pub held: Vec<Held>,
 }
 
-impl Asked {
-    pub fn new(detector: nearmiss::Detector, is_gpu: bool) -> Asked {
+impl<D: Detects> Asked<D> {
+    pub fn new(detector: D, reads_later: bool) -> Asked<D> {
         Asked {
             detector,
-            is_gpu,
+            reads_later,
             current: Current::new(),
             asked: 0,
             collected: Vec::new(),
@@ -120,7 +147,7 @@ impl Asked {
     /// A call that failed may have launched work on a GPU. A CPU has read them.
     pub fn read(&mut self, arrays: Vec<Held>, has_waited: bool) -> Vec<Held> {
         let mut unread = self.unread();
-        if has_waited || !self.is_gpu {
+        if has_waited || !self.reads_later {
             unread.extend(arrays);
             unread.append(&mut self.placing);
             return unread;
@@ -128,6 +155,26 @@ impl Asked {
         self.placing.append(&mut unread);
         self.placing.extend(arrays);
         Vec::new()
+    }
+
+    /// Prepares submissions that read these arrays. Returns the arrays that nothing reads any longer too.
+    pub fn prepare(
+        &mut self,
+        held: Vec<Held>,
+        prepare: impl FnOnce(&mut D) -> Result<(), Error>,
+    ) -> (Result<(), Error>, Vec<Held>) {
+        self.count(Does::Moves);
+        let done = prepare(&mut self.detector);
+        // A refusal may leave it as it was prepared before.
+        let as_before = done.is_err() && self.detector.is_prepared();
+        let unheld = if as_before { held } else { std::mem::replace(&mut self.held, held) };
+        let unread = self.read(unheld, done.is_ok());
+        (done, unread)
+    }
+
+    /// Whether the answer that was on the device after so many calls still is there.
+    pub fn has_answer(&self, asked: u64) -> bool {
+        self.detector.is_prepared() && self.asked == asked
     }
 
     /// Counts a call.

@@ -7,7 +7,7 @@ use crate::errors::raised;
 use crate::exclusions;
 use crate::geometry;
 use crate::key::{self, Key, Pairs, body_of, numbers, pairs_of};
-use crate::on_device::DeviceAnswer;
+use crate::on_device::{DeviceAnswer, Owner};
 use crate::pairs::Curves;
 use crate::pose::Pose;
 use crate::query::{Query, queries_of};
@@ -194,7 +194,7 @@ impl Detector {
             own.look_at(detector.py(), |one| (one.detector.on_device(&query.query), one.asked))?;
         let Some(answer) = answer else { return Ok(None) };
         let device = own.device.get().device.clone();
-        Ok(Some(DeviceAnswer { answer, device, detector: detector.unbind(), asked }))
+        Ok(Some(DeviceAnswer { answer, device, owner: Owner::One(detector.unbind()), asked }))
     }
 
     /// Wait for the last submission, and return the answer to one of its queries.

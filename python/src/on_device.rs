@@ -2,13 +2,69 @@
 
 use crate::detector::Detector;
 use crate::dlpack::{CPU, CUDA, Dtype, FLOAT, INT, Place, Shape, UINT, capsule};
-use crate::errors::raised;
+use crate::errors::{choice, raised};
 use crate::host::rows;
+use crate::several::MultiDetector;
 use nearmiss::Device;
 use nearmiss::contacts::{self, Entries};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
+
+/// The detector that has an answer.
+pub enum Owner {
+    One(Py<Detector>),
+    Several(Py<MultiDetector>),
+}
+
+impl Owner {
+    /// Does something with the answer that was on the device after so many calls, if it still is there.
+    fn with_answer<T: Send>(
+        &self,
+        py: Python<'_>,
+        asked: u64,
+        with: impl FnOnce() -> T + Send,
+    ) -> PyResult<T> {
+        let done = match self {
+            Owner::One(own) => own.get().look_at(py, |one| one.has_answer(asked).then(with)),
+            Owner::Several(own) => own.get().look_at(py, |one| one.has_answer(asked).then(with)),
+        };
+        done?.ok_or_else(|| {
+            choice(
+                "the answer on the device is gone: another call has used the detector, or a list grew",
+                "call on_device after prepare, and again whenever is_prepared was False",
+            )
+        })
+    }
+
+    /// Does something with the devices, in turn with all that share them.
+    fn in_turn<T: Send>(&self, py: Python<'_>, work: impl FnOnce() -> T + Send) -> T {
+        py.detach(|| match self {
+            Owner::One(own) => {
+                let _turn = own.get().device.get().turn();
+                work()
+            }
+            Owner::Several(own) => {
+                let _turns = own.get().turns();
+                work()
+            }
+        })
+    }
+
+    fn clone_ref(&self, py: Python<'_>) -> Owner {
+        match self {
+            Owner::One(own) => Owner::One(own.clone_ref(py)),
+            Owner::Several(own) => Owner::Several(own.clone_ref(py)),
+        }
+    }
+
+    fn into_any(self) -> Py<PyAny> {
+        match self {
+            Owner::One(own) => own.into_any(),
+            Owner::Several(own) => own.into_any(),
+        }
+    }
+}
 
 /// Array in the memory of the device.
 ///
@@ -20,7 +76,7 @@ pub struct DeviceArray {
     shape: Shape,
     device: Device,
     /// The detector that owns the memory, and its count of answers when the array was made.
-    detector: Py<Detector>,
+    owner: Owner,
     asked: u64,
 }
 
@@ -44,7 +100,7 @@ impl DeviceArray {
             // SAFETY: the answer is there, and it moves only under the lock, which is held.
             unsafe { std::slice::from_raw_parts(address as *const u8, bytes) }.to_vec()
         };
-        let copy = self.detector.get().with_answer(py, self.asked, copy)?;
+        let copy = self.owner.with_answer(py, self.asked, copy)?;
         Ok(PyBytes::new(py, &copy))
     }
 }
@@ -73,15 +129,13 @@ impl DeviceArray {
             let shape = Shape { address: copy.as_bytes().as_ptr() as u64, ..self.shape.clone() };
             return capsule(py, &shape, copy.into_any().unbind());
         };
-        self.detector.get().with_answer(py, self.asked, || ())?;
+        self.owner.with_answer(py, self.asked, || ())?;
         // -1: no order is needed.
         if stream != Some(ours.max(1) as i64) && stream != Some(-1) {
-            self.detector
-                .get()
-                .in_turn(py, || self.device.event()?.to(&self.device.event()?))
-                .map_err(raised)?;
+            let wait = || self.device.event()?.to(&self.device.event()?);
+            self.owner.in_turn(py, wait).map_err(raised)?;
         }
-        capsule(py, &self.shape, self.detector.clone_ref(py).into_any())
+        capsule(py, &self.shape, self.owner.clone_ref(py).into_any())
     }
 
     /// Kind and number of the device, as DLPack counts them.
@@ -95,7 +149,7 @@ impl DeviceArray {
         let Some(stream) = self.device.stream() else {
             return Err(pyo3::exceptions::PyAttributeError::new_err("the array is on the CPU; use DLPack"));
         };
-        self.detector.get().with_answer(py, self.asked, || ())?;
+        self.owner.with_answer(py, self.asked, || ())?;
         let Dtype { code, bits, .. } = self.shape.dtype;
         let size = i64::from(bits / 8);
         let letter = match code {
@@ -132,7 +186,7 @@ impl DeviceArray {
 pub struct DeviceAnswer {
     pub answer: contacts::DeviceAnswer,
     pub device: Device,
-    pub detector: Py<Detector>,
+    pub owner: Owner,
     pub asked: u64,
 }
 
@@ -191,12 +245,7 @@ impl DeviceAnswer {
             None => Place { kind: CPU, ordinal: 0 },
         };
         let shape = Shape { address, place, dtype, shape, strides };
-        DeviceArray {
-            shape,
-            device: self.device.clone(),
-            detector: self.detector.clone_ref(py),
-            asked: self.asked,
-        }
+        DeviceArray { shape, device: self.device.clone(), owner: self.owner.clone_ref(py), asked: self.asked }
     }
 }
 

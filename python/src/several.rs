@@ -1,7 +1,7 @@
 //! A scene on several devices of one host.
 
 use crate::answer::{Answer, typed};
-use crate::asked::{Current, Does};
+use crate::asked::{Asked, Does};
 use crate::detector::Answered;
 use crate::device::Device;
 use crate::errors::raised;
@@ -9,8 +9,9 @@ use crate::exclusions;
 use crate::frame::{Frame, Named, Reader, keyed};
 use crate::geometry;
 use crate::key::{self, Key, Pairs, body_of, numbers, pairs_of};
+use crate::on_device::{DeviceAnswer, Owner};
 use crate::opened::take;
-use crate::query::Query;
+use crate::query::{Query, queries_of};
 use crate::rows::FirstContact;
 use crate::scene::{Body, scene_of};
 use crate::thickness::thickness_of;
@@ -20,7 +21,7 @@ use nearmiss::scene::BodyId;
 use nearmiss::words::counted;
 use nearmiss::{Error, Interrupt};
 use pyo3::prelude::*;
-use std::sync::{Mutex, MutexGuard};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Scene on several devices of one host, which divide the work of each query.
 ///
@@ -30,27 +31,29 @@ use std::sync::{Mutex, MutexGuard};
 /// - `scene`: a Scene, or one Body, whose number is then 0.
 /// - `devices`: at least one Device, such as [Device(gpu=0), Device(gpu=1)].
 ///
-/// Takes Discrete, Continuous, Earliest and Near. Each device has a copy of positions. There are no
-/// submissions. Raises InvalidArgumentError without devices.
+/// Takes Discrete, Continuous, Earliest and Near. Each device has a copy of positions. Raises
+/// InvalidArgumentError without devices.
 #[pyclass(module = "nearmiss", frozen)]
 pub struct MultiDetector {
-    one: Mutex<Several>,
+    one: Mutex<Asked<nearmiss::MultiDetector>>,
     devices: Vec<Py<Device>>,
     /// Ends its calls.
     interrupt: Interrupt,
 }
 
-struct Several {
-    detector: nearmiss::MultiDetector,
-    current: Current,
+type Several = Asked<nearmiss::MultiDetector>;
+
+/// The locks of all devices, in one order for all threads.
+fn locks(devices: &[Py<Device>]) -> Vec<&Mutex<()>> {
+    let mut locks: Vec<&Mutex<()>> = devices.iter().map(|device| &device.get().turn).collect();
+    locks.sort_by_key(|lock| std::ptr::from_ref(*lock));
+    locks.dedup_by_key(|lock| std::ptr::from_ref(*lock));
+    locks
 }
 
-/// Waits for the turn of each device, in one order for all threads.
+/// Waits for the turn of each device.
 fn turns<'a>(devices: &'a [Py<Device>], watch: &Watch) -> Result<Vec<MutexGuard<'a, ()>>, Error> {
-    let mut turns: Vec<&Mutex<()>> = devices.iter().map(|device| &device.get().turn).collect();
-    turns.sort_by_key(|turn| std::ptr::from_ref(*turn));
-    turns.dedup_by_key(|turn| std::ptr::from_ref(*turn));
-    turns.into_iter().map(|turn| watch.lock(turn)).collect()
+    locks(devices).into_iter().map(|lock| watch.lock(lock)).collect()
 }
 
 impl MultiDetector {
@@ -61,14 +64,29 @@ impl MultiDetector {
         does: Does,
         call: impl FnOnce(&mut Several) -> Result<T, Error> + Send,
     ) -> PyResult<T> {
+        let (done, unread) = self.work(py, |one| {
+            one.count(does);
+            (call(one), one.unread())
+        })?;
+        drop(unread);
+        done.map_err(raised)
+    }
+
+    /// Works with the detector, in turn with all that share a device. A signal ends it.
+    fn work<T: Send>(&self, py: Python<'_>, work: impl FnOnce(&mut Several) -> T + Send) -> PyResult<T> {
         let done = watched(py, &self.interrupt, |watch| {
             let mut one = watch.lock(&self.one)?;
             let _turns = turns(&self.devices, watch)?;
             watch.begins();
-            one.current.count(does);
-            call(&mut one)
+            Ok(work(&mut one))
         });
         done?.map_err(raised)
+    }
+
+    /// Waits for the turn of each device. Never called while the interpreter is held.
+    pub fn turns(&self) -> Vec<MutexGuard<'_, ()>> {
+        let locks = locks(&self.devices).into_iter();
+        locks.map(|lock| lock.lock().unwrap_or_else(PoisonError::into_inner)).collect()
     }
 
     /// Looks at the detector.
@@ -77,7 +95,12 @@ impl MultiDetector {
         py: Python<'_>,
         look: impl FnOnce(&nearmiss::MultiDetector) -> T + Send,
     ) -> PyResult<T> {
-        watch::look(py, &self.interrupt, &self.one, |one| look(&one.detector))
+        self.look_at(py, |one| look(&one.detector))
+    }
+
+    /// The same, with what is known of earlier calls.
+    pub fn look_at<T: Send>(&self, py: Python<'_>, look: impl FnOnce(&Several) -> T + Send) -> PyResult<T> {
+        watch::look(py, &self.interrupt, &self.one, look)
     }
 
     /// Runs a call that returns an answer.
@@ -89,17 +112,17 @@ impl MultiDetector {
     ) -> Answered<'py> {
         let (contacts, stamp, names) = self.run(py, does, |one| {
             let contacts = call(one)?;
-            Ok((contacts, one.current.stamp(), one.current.names(one.detector.scene())))
+            Ok((contacts, one.stamp(), one.names()))
         })?;
         typed(py, contacts, stamp, names)
     }
 
-    /// Motions of bodies, in host memory.
-    fn frame_of(&self, py: Python<'_>, inputs: &Bound<'_, PyAny>) -> PyResult<Frame> {
+    /// Motions of bodies. Arrays of numpy are read in place, or copied.
+    fn frame_of(&self, py: Python<'_>, inputs: &Bound<'_, PyAny>, in_place: bool) -> PyResult<Frame> {
         let (keys, places): (Vec<_>, Vec<_>) = keyed(inputs)?.into_iter().unzip();
         let named = self.look(py, |detector| Named::all(detector.scene(), &keys))?.map_err(raised)?;
         let devices: Vec<_> = self.devices.iter().map(|device| &device.get().device).collect();
-        Frame::of(named.into_iter().zip(places).collect(), Reader { devices: &devices, in_place: false })
+        Frame::of(named.into_iter().zip(places).collect(), Reader { devices: &devices, in_place })
     }
 
     fn body(&self, py: Python<'_>, body: Key) -> PyResult<BodyId> {
@@ -123,7 +146,7 @@ impl MultiDetector {
         });
         let detector = detector?.map_err(raised)?;
         take(scene)?;
-        let one = Mutex::new(Several { detector, current: Current::new() });
+        let one = Mutex::new(Several::new(detector, false));
         Ok(MultiDetector { one, devices, interrupt })
     }
 
@@ -135,7 +158,7 @@ impl MultiDetector {
     /// Raises as Detector.update does, and InvalidArgumentError for arrays of another GPU, or of a GPU if
     /// a device is a CPU: then nothing has moved.
     fn update(&self, py: Python<'_>, inputs: &Bound<'_, PyAny>) -> PyResult<()> {
-        let frame = self.frame_of(py, inputs)?;
+        let frame = self.frame_of(py, inputs, false)?;
         let given = frame.inputs();
         self.run(py, Does::Moves, |one| one.detector.update(&given))
     }
@@ -153,15 +176,62 @@ impl MultiDetector {
     ///
     /// As `update` and `query`. An error of the motions or of the query has moved nothing.
     fn step<'py>(&self, py: Python<'py>, inputs: &Bound<'_, PyAny>, query: &Query) -> Answered<'py> {
-        let frame = self.frame_of(py, inputs)?;
+        let frame = self.frame_of(py, inputs, false)?;
         let (given, query) = (frame.inputs(), query.query);
         self.answer(py, Does::Moves, |one| one.detector.step(&given, &query))
+    }
+
+    /// Prepare submissions: see Detector.prepare.
+    ///
+    /// Arrays may be on any of the GPUs; every submission copies them to the others. The work is
+    /// divided by what it costs now, until the next preparation.
+    fn prepare(&self, py: Python<'_>, inputs: &Bound<'_, PyAny>, queries: &Bound<'_, PyAny>) -> PyResult<()> {
+        let (queries, frame) = (queries_of(queries)?, self.frame_of(py, inputs, true)?);
+        let (given, held) = (frame.on_device()?, frame.held);
+        let (done, unread) =
+            self.work(py, |one| one.prepare(held, |detector| detector.prepare(&given, &queries)))?;
+        drop(unread);
+        done.map_err(raised)
+    }
+
+    /// Whether `submit` may be called.
+    #[getter]
+    fn is_prepared(&self, py: Python<'_>) -> PyResult<bool> {
+        self.look(py, nearmiss::MultiDetector::is_prepared)
+    }
+
+    /// Launch the prepared queries on the streams of all GPUs: see Detector.submit.
+    ///
+    /// The stream of a GPU that has arrays goes on when the others have their copies. No graph can
+    /// record it.
+    fn submit(&self, py: Python<'_>) -> PyResult<()> {
+        self.run(py, Does::Submits, |one| one.detector.submit())
+    }
+
+    /// Return the answers to a prepared query in device memory, one a device; None if it is not prepared.
+    ///
+    /// Each has the rows of the device's share: see Detector.on_device. Of an Earliest query each has
+    /// the time of its share.
+    fn on_device(detector: Bound<'_, Self>, query: &Query) -> PyResult<Option<Vec<DeviceAnswer>>> {
+        let (py, own) = (detector.py(), detector.get());
+        let (answers, asked) = own.look_at(py, |one| (one.detector.on_device(&query.query), one.asked))?;
+        let of = |(answer, device): (_, &Py<Device>)| {
+            let owner = Owner::Several(detector.clone().unbind());
+            DeviceAnswer { answer, device: device.get().device.clone(), owner, asked }
+        };
+        Ok(answers.map(|answers| answers.into_iter().zip(&own.devices).map(of).collect()))
+    }
+
+    /// Wait for the last submission, and return the answer to one of its queries: see Detector.collect.
+    fn collect<'py>(&self, py: Python<'py>, query: &Query) -> Answered<'py> {
+        let query = query.query;
+        self.answer(py, Does::Collects(query), |one| one.detector.collect(&query))
     }
 
     /// Return where the features or triangles of an answer's rows meet: see Detector.geometry.
     fn geometry<'py>(&self, py: Python<'py>, answer: &Answer) -> Answered<'py> {
         let places = self.run(py, Does::Reads, |one| {
-            one.current.check(answer.stamp)?;
+            one.check(answer.stamp)?;
             one.detector.geometry(&answer.contacts)
         })?;
         geometry::typed(py, places)
@@ -171,7 +241,7 @@ impl MultiDetector {
     fn first_contacts<'py>(&self, py: Python<'py>, first: PyRef<'_, FirstContact>) -> Answered<'py> {
         let about: &Answer = first.as_super();
         self.answer(py, Does::Queries, |one| {
-            one.current.check(about.stamp)?;
+            one.check(about.stamp)?;
             one.detector.first_contacts(&about.contacts).map(nearmiss::Contacts::from)
         })
     }

@@ -4,7 +4,7 @@ use crate::answer::{Answer, typed};
 use crate::asked::{Asked, Does};
 use crate::borrowed::Held;
 use crate::detector::Detector;
-use crate::errors::{choice, raised};
+use crate::errors::raised;
 use crate::frame::{Frame, Named, Reader, keyed};
 use crate::key::{self, Key};
 use crate::pose::{Ends, Pose};
@@ -112,14 +112,6 @@ impl Detector {
         watch::look(py, &self.interrupt, &self.one, look)
     }
 
-    /// Does something with the device, in turn with all that share it.
-    pub fn in_turn<T: Send>(&self, py: Python<'_>, work: impl FnOnce() -> T + Send) -> T {
-        py.detach(|| {
-            let _turn = self.device.get().turn();
-            work()
-        })
-    }
-
     /// Never called while the interpreter is held: the lock's holder may wait for that. Called before
     /// the device's turn.
     pub fn locked(&self) -> MutexGuard<'_, Asked> {
@@ -159,15 +151,8 @@ impl Detector {
         let frame = self.frame_of(py, inputs)?;
         let given = frame.on_device()?;
         let held = frame.held;
-        let (done, unread) = self.work(py, |one| {
-            one.count(Does::Moves);
-            let done = one.detector.prepare(&given, queries);
-            // A refusal may leave it as it was prepared before.
-            let as_before = done.is_err() && one.detector.is_prepared();
-            let unheld = if as_before { held } else { std::mem::replace(&mut one.held, held) };
-            let unread = one.read(unheld, done.is_ok());
-            (done, unread)
-        })?;
+        let (done, unread) =
+            self.work(py, |one| one.prepare(held, |detector| detector.prepare(&given, queries)))?;
         drop(unread);
         done.map_err(raised)
     }
@@ -203,22 +188,6 @@ impl Detector {
             detector.scene().get(id).map(nearmiss::Body::poses).ok_or_else(gone)
         })?;
         Ok((Pose::known(py, start)?, Pose::known(py, end)?))
-    }
-
-    /// Does something with the answer that was on the device after so many calls, if it still is there.
-    pub fn with_answer<T: Send>(
-        &self,
-        py: Python<'_>,
-        asked: u64,
-        with: impl FnOnce() -> T + Send,
-    ) -> PyResult<T> {
-        let there = |one: &Asked| (one.detector.is_prepared() && one.asked == asked).then(with);
-        self.look_at(py, there)?.ok_or_else(|| {
-            choice(
-                "the answer on the device is gone: another call has used the detector, or a list grew",
-                "call on_device after prepare, and again whenever is_prepared was False",
-            )
-        })
     }
 }
 

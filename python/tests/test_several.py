@@ -65,6 +65,48 @@ def test_answers_are_those_of_one_device(count):
         np.testing.assert_array_equal(getattr(a, column), getattr(b, column))
 
 
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_submissions_are_those_of_one_device(count):
+    (all, steps), queries = scene(), [Discrete(), Continuous(), Earliest(), Near(0.01)]
+    one = nearmiss.Detector(scene()[0], device=nearmiss.Device("cpu"))
+    several = nearmiss.MultiDetector(all, devices(count))
+    arrays = {body: tuple(np.array(end) for end in steps[body]) for body in range(2)}
+    one.update({2: steps[2][0]})
+    several.update({2: steps[2][0]})
+    assert several.on_device(Discrete()) is None
+    several.prepare(arrays, queries)
+    for frame in range(3):
+        for start, end in arrays.values():
+            start += 0.002 * frame
+            end -= 0.001 * frame
+        if not several.is_prepared:
+            several.prepare(arrays, queries)
+        several.submit()
+        one.update(arrays)
+        for query in queries:
+            if several.is_prepared:
+                parts = several.on_device(query)
+                counts = [int(np.from_dlpack(part.status)[:2].sum()) for part in parts]
+                assert len(parts) == count and (isinstance(query, Earliest) or sum(counts) == len(one.query(query)))
+            assert same(one.query(query), several.collect(query)), (frame, query)
+    # A call that changes the detector ends the preparation, and the answers on the devices.
+    several.prepare(arrays, queries)
+    several.submit()
+    status = several.on_device(Discrete())[-1].status
+    assert several.is_prepared and np.from_dlpack(status)[2] == 0
+    several.update(arrays)
+    assert not several.is_prepared
+    with pytest.raises(nearmiss.InvalidArgumentError, match="the answer on the device is gone"):
+        np.from_dlpack(status)
+    with pytest.raises(nearmiss.InvalidArgumentError, match="not prepared"):
+        several.submit()
+    with pytest.raises(nearmiss.InvalidArgumentError, match="in place by a submission"):
+        several.prepare({0: np.asfortranarray(steps[0][0])}, queries)
+    if count > 1:
+        with pytest.raises(nearmiss.InvalidArgumentError, match="several devices"):
+            several.prepare(arrays, [nearmiss.Distance()])
+
+
 def test_another_answer_is_noticed():
     several = nearmiss.MultiDetector(scene()[0], devices(2))
     several.update(scene()[1])

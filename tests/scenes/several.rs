@@ -1,5 +1,7 @@
 //! A scene that is divided among devices: the answer of one, to the bit, however it is divided.
 
+mod submitted;
+
 use nearmiss::mesh::{Body, Positions};
 use nearmiss::query::{Query, QueryKind};
 use nearmiss::research::{BoundingVolume, BroadPhase, QueryExt};

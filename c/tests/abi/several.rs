@@ -59,6 +59,53 @@ fn answers_are_those_of_one_device() {
     }
 }
 
+/// The answer on each device.
+fn on_each(
+    detector: &mut NearmissDetector,
+    query: &NearmissQuery,
+    count: usize,
+) -> Told<Vec<NearmissDeviceAnswer>> {
+    let mut answers = vec![MaybeUninit::<NearmissDeviceAnswer>::uninit(); count];
+    // SAFETY: there is room for so many; the query has no names. All are written if the call succeeds.
+    let told = told(|error| unsafe {
+        nearmiss_detector_on_each_device(
+            Some(detector),
+            Some(query),
+            answers.as_mut_ptr().cast(),
+            count,
+            error,
+        )
+    });
+    // SAFETY: as above.
+    told.map(|()| answers.iter().map(|answer| unsafe { answer.assume_init() }).collect())
+}
+
+#[test]
+fn submissions_are_divided_and_have_the_answers_of_one_device() {
+    let of: Body = soup(300, 1, true).expect("a soup");
+    let bodies = [described(&of)];
+    let [t0, t1] = of.ends().map(rows);
+    let motion = NearmissMotion { on_device: 1, ..nearmiss_motion_step(0, t0, t1) };
+    let asked = [nearmiss_query(0), nearmiss_query(1), nearmiss_query(2), near(0.01)];
+    let mut one = detector(&bodies);
+    update(&mut one, &[motion]).expect("moved");
+    for count in [1, 3] {
+        let mut several = several(count, &bodies).expect("a detector");
+        assert_eq!(prepare(&mut several, &[motion], &asked), Ok(()));
+        assert_eq!(told(|error| nearmiss_detector_submit(Some(&mut several), error)), Ok(()));
+        for asked in &asked {
+            let parts = on_each(&mut several, asked, count).expect("prepared");
+            // SAFETY: a CPU has it in memory of the host, until the detector is asked again.
+            let rows = parts.iter().map(|part| unsafe { &*(part.status as *const NearmissFrameStatus) });
+            let rows: u64 = rows.map(|status| status.first + status.second).sum();
+            let found = summary(&collect(&mut several, asked).expect("an answer"));
+            let wanted = summary(&query(&mut one, asked).expect("an answer"));
+            assert_eq!((found.hash, found.contacts), (wanted.hash, wanted.contacts));
+            assert!(found.contacts > 0 && (asked.kind == 2 || rows == found.contacts), "{rows}");
+        }
+    }
+}
+
 #[test]
 fn what_several_devices_do_not_do_is_named() {
     let of: Body = soup(50, 1, true).expect("a soup");
@@ -80,13 +127,14 @@ fn what_several_devices_do_not_do_is_named() {
     let mut detector = several(2, &bodies).expect("a detector");
     let [t0, _] = of.ends().map(rows);
     let motion = NearmissMotion { on_device: 1, ..nearmiss_motion_positions(0, t0) };
+    assert_eq!(prepare(&mut detector, &[motion], &[near(0.01)]), Ok(()));
+    refused(on_device(&mut detector, &near(0.01)).map(drop), "one answer in device memory by a detector on");
     refused(
-        prepare(&mut detector, &[motion], &[near(0.01)]),
-        "a submission by a detector on several devices",
+        on_each(&mut detector, &near(0.01), 3).map(drop),
+        "detector has 2 devices, got room for 3 answers",
     );
-    refused(told(|error| nearmiss_detector_submit(Some(&mut detector), error)), "a submission");
-    refused(collect(&mut detector, &near(0.01)).map(drop), "a submission");
-    refused(on_device(&mut detector, &near(0.01)).map(drop), "an answer in device memory");
+    refused(on_each(&mut detector, &near(0.02), 2).map(drop), "is not prepared with these numbers");
+    refused(prepare(&mut detector, &[motion], &[nearmiss_query(4)]), "several devices");
     refused(query(&mut detector, &nearmiss_query(4)).map(drop), "several devices");
     refused(shares(&mut detector, &near(0.01), 3).map(drop), "detector has 2 devices, got room for 3 shares");
     let mut one = super::detector(&bodies);

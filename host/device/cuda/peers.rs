@@ -33,6 +33,13 @@ impl Cuda {
         Ok(call())
     }
 
+    /// Puts what follows in this one's stream after all work so far in another's.
+    pub fn follow(&self, other: &Cuda) -> Result<(), Error> {
+        // The driver keeps the event as long as the streams need it.
+        let event = other.event()?;
+        self.stream.follow(&self.bind()?, &event.0).map_err(refused("waiting for another GPU"))
+    }
+
     /// Copies bytes from memory of another GPU, after all work of this one's stream.
     ///
     /// # Safety
