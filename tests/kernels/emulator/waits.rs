@@ -1,5 +1,5 @@
-//! Pairs that wait on chip until there is one a lane: each is taken out once, whatever the lanes and
-//! the schedule, and a planted fault is found.
+//! Pairs that wait on chip until there is one a lane: each is taken out once for any lanes and in any
+//! schedule, and a planted fault is found.
 
 use super::together::launch;
 use super::*;
@@ -31,7 +31,7 @@ fn adds(given: u32, turn: u32) -> bool {
     }
 }
 
-/// A number of a pair; sums of them tell sets of pairs apart.
+/// A number of a pair; sums of them differ for different sets of pairs.
 fn mark(pair: Pair) -> u64 {
     1 + u64::from(noise(3 * pair.a + 7 * pair.b)) + 1000 * u64::from(pair.a * TURNS + pair.b)
 }
@@ -110,7 +110,7 @@ fn each_pair_that_waits_is_taken_once() {
     });
 }
 
-/// Of the launches that may leave a rest how many differ from what was added, and how many there are.
+/// How many launches that may leave a rest differ from what was added, and how many there are.
 fn differing<E: Entry<Args = Args>>() -> [u32; 2] {
     let seen = std::cell::Cell::new([0; 2]);
     everywhere::<E>(noise, |left| {
