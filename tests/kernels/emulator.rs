@@ -125,6 +125,7 @@ kernels! { [Args], 64, 4096;
 mod outputs;
 mod selects;
 mod together;
+mod waits;
 
 /// The state after a launch.
 struct Left {

@@ -3,8 +3,10 @@
 //!          one every pair of features.
 //! Launch   a lane a candidate, both kinds in one launch; a grid of any size strides. First in f32,
 //!          on a CPU in vectors.
-//!          The same lane measures the rest in f64. Numbering these first, for full warps, takes a
-//!          third longer on an H200 (`benches/NOTES.md`).
+//!          The same lane measures the rest in f64. Numbering these first, within a stretch of a
+//!          block of 128, takes a third longer on an H200 (`benches/NOTES.md`).
+//!          With a thickness or exclusions a warp a block, as many blocks as are resident. There
+//!          the rest wait on chip until there is one a lane: a measured pair costs more.
 //! Reads    candidates, faces or edges, positions (four vertices).
 //! Writes   pairs with squared distance and nearest points; the number of pairs that are not
 //!          certainly within the distance.
@@ -12,7 +14,8 @@
 //! After    hits ⊇ {candidates within the distance, and with a thickness both radii}, less those that
 //!          the scene excludes ([`super::exclude`]). None is farther by more than the rounding of
 //!          f64, see [`crate::prim::near`].
-//! Room     hits: counted past the end, grown, run again.
+//! Room     hits: counted past the end, grown, run again. Pairs that wait: less than one a lane
+//!          is left when a stretch adds at most one a lane, so two a lane are always enough.
 //! Departs  pairs are measured in f64 for positions of either precision, so the bound is that of
 //!          f64.
 //! Cost     8 B candidate, 12 B indices, 64 B positions (f64: 128 B; gathered), again for each
@@ -22,39 +25,52 @@
 
 use super::{Entries, edge_edge_at, exclude, stride, vertex_face_at};
 use crate::abi::{Counters, NearArgs, NearExcludingArgs, NearHit, Output, Pair, ThickNearArgs, counter};
-use crate::exec::{Block, Lane, RowMap};
+use crate::exec::{ALONE, Block, Lane, RowMap, WARP};
 use crate::math::Real;
 use crate::prim::near::{
     Filter, Near, ThickFilter, edge_edge, thick_edge_edge, thick_vertex_face, vertex_face,
 };
+use crate::queue::waiting::{Waiting, waiting_bytes};
+
+/// Lanes of a block whose pairs wait: one warp, whose barriers and numbering cost next to nothing.
+pub const LANES: u32 = WARP;
+/// Bytes of shared memory of such a block.
+pub const SHARED: u32 = waiting_bytes(LANES);
+/// Stretches of neighbours that such a block takes in sequence: neighbours share vertices.
+const RUN: u32 = 4;
 
 /// Both kinds.
 pub fn near<R: Real, B: Block>(block: &mut B, args: &NearArgs<R>) {
-    both(block, args, |_, _| false, |_, _| false);
+    both(block, args, None, |_, _| false, |_, _| false);
 }
 
 /// Both kinds, without pairs that the scene excludes. They are looked up once measured, when few are
 /// left.
 pub fn near_excluding<R: Real, B: Block>(block: &mut B, args: &NearExcludingArgs<R>) {
     let NearExcludingArgs { near, tables } = args;
+    let mut waiting = Waiting::new(block);
     both(
         block,
         near,
+        Some(&mut waiting),
         |lane: &B::Lane, pair| exclude::vertex_face(lane, tables, near.faces, pair),
         |lane: &B::Lane, pair| exclude::edge_edge(lane, tables, near.edges, pair),
     );
 }
 
-/// Both kinds, without pairs that are excluded.
+/// Both kinds, without pairs that are excluded. With a place to wait, pairs wait there before they
+/// are measured.
 #[inline(always)]
 fn both<R: Real, B: Block>(
     block: &mut B,
     args: &NearArgs<R>,
+    mut waiting: Option<&mut Waiting<B>>,
     excludes_vf: impl Fn(&B::Lane, Pair) -> bool,
     excludes_ee: impl Fn(&B::Lane, Pair) -> bool,
 ) {
     each(
         block,
+        waiting.as_deref_mut(),
         (args.vf, args.vf_hits, args.counters),
         &Filter::<R, true>::new(args.distance),
         |lane, pair| {
@@ -67,6 +83,7 @@ fn both<R: Real, B: Block>(
     );
     each(
         block,
+        waiting,
         (args.ee, args.ee_hits, args.counters),
         &Filter::<R, false>::new(args.distance),
         |lane, pair| {
@@ -82,6 +99,7 @@ fn both<R: Real, B: Block>(
 /// Both kinds, of vertices with a thickness, without pairs that the scene excludes.
 pub fn thick<R: Real, B: Block>(block: &mut B, args: &ThickNearArgs<R>) {
     let ThickNearArgs { near, radii, tables } = args;
+    let mut waiting = Waiting::new(block);
     let vf = |lane: &B::Lane, pair: Pair| {
         let [x, y, z] = lane.read(near.faces, pair.b);
         [pair.a, x, y, z]
@@ -93,8 +111,9 @@ pub fn thick<R: Real, B: Block>(block: &mut B, args: &ThickNearArgs<R>) {
     let points = |lane: &B::Lane, of: [u32; 4]| of.map(|vertex| lane.read(near.positions, vertex));
     // In f32 the radius of a point is rounded up.
     let exact = |lane: &B::Lane, of: [u32; 4]| of.map(|vertex| lane.read(*radii, vertex));
-    each(
+    in_full_warps(
         block,
+        &mut waiting,
         (near.vf, near.vf_hits, near.counters),
         &ThickFilter::<R, true>::new(near.distance),
         |lane, pair| points(lane, vf(lane, pair)),
@@ -103,8 +122,9 @@ pub fn thick<R: Real, B: Block>(block: &mut B, args: &ThickNearArgs<R>) {
             found.filter(|_| !exclude::vertex_face(lane, tables, near.faces, pair))
         },
     );
-    each(
+    in_full_warps(
         block,
+        &mut waiting,
         (near.ee, near.ee_hits, near.counters),
         &ThickFilter::<R, false>::new(near.distance),
         |lane, pair| points(lane, ee(lane, pair)),
@@ -115,15 +135,22 @@ pub fn thick<R: Real, B: Block>(block: &mut B, args: &ThickNearArgs<R>) {
     );
 }
 
+/// The lists of one kind: candidates, hits, and the frame's counters.
+type Lists = (Output<Pair>, Output<NearHit>, Counters);
+
 /// One kind: filters the candidates of each stretch, and measures the rest.
 #[inline(always)]
 fn each<B: Block, M: RowMap>(
     block: &mut B,
-    (pairs, hits, counters): (Output<Pair>, Output<NearHit>, Counters),
+    waiting: Option<&mut Waiting<B>>,
+    (pairs, hits, counters): Lists,
     filter: &M,
     gather: impl Fn(&B::Lane, Pair) -> M::Row,
     measure: impl Fn(&B::Lane, Pair, M::Row) -> Option<Near>,
 ) {
+    if let Some(waiting) = waiting {
+        return in_full_warps(block, waiting, (pairs, hits, counters), filter, gather, measure);
+    }
     let count = pairs.listed(block);
     let mut entries = Entries::new(block);
     stride(block, count, |block, base| {
@@ -138,14 +165,78 @@ fn each<B: Block, M: RowMap>(
                 let kept = result.filter(|(_, keep)| *keep != 0).map(|(pair, _)| pair);
                 let hit = kept.and_then(|pair| {
                     let near = measure(lane, pair, gather(lane, pair))?;
-                    if !near.certain {
-                        counters.add(lane, counter::UNDECIDED, 1);
-                    }
-                    Some(NearHit { a: pair.a, b: pair.b, squared: near.squared, at: near.at })
+                    Some(counted(lane, counters, pair, near))
                 });
                 entries.set(lane, hit);
             },
         );
         entries.append(block, hits);
     });
+}
+
+/// The row of a pair, counted if it is not decided.
+#[inline(always)]
+fn counted<L: Lane>(lane: &L, counters: Counters, pair: Pair, near: Near) -> NearHit {
+    if !near.certain {
+        counters.add(lane, counter::UNDECIDED, 1);
+    }
+    NearHit { a: pair.a, b: pair.b, squared: near.squared, at: near.at }
+}
+
+/// As [`each`], but the rest wait until there is one a lane, and are measured together. Else a warp
+/// takes as long for its one pair as for 32.
+///
+/// A turn adds at most one a lane and takes out as many, if they are there. So the last turn, which
+/// adds none, empties the list.
+#[inline(always)]
+fn in_full_warps<B: Block, M: RowMap>(
+    block: &mut B,
+    waiting: &mut Waiting<B>,
+    (pairs, hits, counters): Lists,
+    filter: &M,
+    gather: impl Fn(&B::Lane, Pair) -> M::Row,
+    measure: impl Fn(&B::Lane, Pair, M::Row) -> Option<Near>,
+) {
+    let (count, lanes) = (pairs.listed(block), block.lanes());
+    let share = block.share(count, RUN * lanes);
+    if ALONE && share.is_empty() {
+        return;
+    }
+    let mut entries = Entries::new(block);
+    let (mut base, mut turn, end) = (share.first as u64, 0, share.end as u64);
+    // One place in the code for each step, or the compiler puts it out of line: so the last turn
+    // has no new pairs.
+    loop {
+        let is_end = base >= end;
+        block.map_rows(
+            filter,
+            |lane| {
+                let i = base + lane.lane() as u64;
+                (i < end).then(|| pairs.get(lane, i as u32))
+            },
+            |lane, pair| Some(gather(lane, pair)),
+            |lane, result| {
+                waiting.set(lane, result.and_then(|(pair, keep)| (keep != 0).then_some(pair)));
+            },
+        );
+        waiting.add(block);
+        let (from, some) = waiting.take(block, is_end);
+        if some > 0 {
+            block.phase(|lane| {
+                let mine = (lane.lane() < some).then(|| waiting.get(lane, from + lane.lane()));
+                let hit = mine.and_then(|pair| {
+                    let near = measure(lane, pair, gather(lane, pair))?;
+                    Some(counted(lane, counters, pair, near))
+                });
+                entries.set(lane, hit);
+            });
+            entries.append(block, hits);
+        }
+        if is_end {
+            break;
+        }
+        turn += 1;
+        let is_run = turn % RUN != 0;
+        base += if is_run { lanes as u64 } else { (share.step - (RUN - 1) * lanes) as u64 };
+    }
 }
