@@ -23,7 +23,7 @@ namespace {
 constexpr double RADIUS = 0.25, STEP = 0.01, GRAVITY = 9.81; // metres, seconds
 constexpr double FRICTION = 0.3, DAMPING = 2.0;              // damping a second
 constexpr double BENDING = 2e-3;                             // compliance, seconds squared
-constexpr int ITERATIONS = 20, ATTEMPTS = 8;
+constexpr int ATTEMPTS = 8;
 // In cells, below the distance of opposite parts of a cell: a flat cloth has no near pairs.
 constexpr double THICKNESS = 0.15, REACH = 0.25;
 
@@ -105,6 +105,9 @@ struct Spring {
     double rest, compliance, multiplier;
 };
 
+// Iterations of a step: with more cells a pull takes more of them to cross the cloth.
+int iterations_for(uint32_t cells) { return 20 * std::max(1, int(std::lround(cells / 75.0))); }
+
 std::vector<Spring> make_springs(uint32_t cells, const Points &x)
 {
     std::vector<Spring> springs;
@@ -133,7 +136,8 @@ class Cloth {
     size_t own; // vertices of the cloth; those of the ball follow them in `x`
     uint64_t crossing = 0;
 
-    explicit Cloth(uint32_t cells) : thickness(THICKNESS / cells), reach(REACH / cells)
+    explicit Cloth(uint32_t cells)
+        : thickness(THICKNESS / cells), reach(REACH / cells), iterations(iterations_for(cells))
     {
         Triangles triangles, ball_triangles;
         Points ball;
@@ -179,6 +183,7 @@ class Cloth {
 
   private:
     double thickness, reach;
+    int iterations;
     std::vector<Spring> springs;
     uint32_t id = 0;
     NearmissError error;
@@ -242,7 +247,7 @@ class Cloth {
             goal[i] = x[i] + STEP * v[i] + Point{0, 0, -GRAVITY * STEP * STEP};
         for (Spring &spring : springs)
             spring.multiplier = 0;
-        for (int iteration = 0; iteration < ITERATIONS; iteration++) {
+        for (int iteration = 0; iteration < iterations; iteration++) {
             for (auto &[a, b, rest, compliance, multiplier] : springs) {
                 const Point along = goal[a] - goal[b];
                 const double now = length(along);

@@ -52,6 +52,15 @@ class Watch:
         return {name: column(name) for name in answer.lists[0]}, first, crossing
 
 
+def recorded(work, stream):
+    """The work on a stream as one call of a graph; `work` keeps its arrays at their places."""
+    work()  # what is made at a first call cannot be recorded
+    graph = torch.cuda.CUDAGraph()
+    with torch.cuda.graph(graph, stream=stream):
+        work()
+    return graph.replay
+
+
 class Cloth:
     """A cloth of springs above a fixed ball. Vertices of the ball follow those of the cloth."""
 
@@ -64,11 +73,14 @@ class Cloth:
         self.goal, self.v = self.x.clone(), torch.zeros_like(self.x)
         self.inverse_mass = (torch.arange(len(self.x), device=device) < self.own).double()
         self.thickness, reach = drape.THICKNESS / cells, drape.REACH / cells
+        self.iterations = drape.iterations(cells)
         self.springs = []
         for pairs, compliance in drape.springs(cells):
             a, b = on_device(pairs).T.contiguous()
             rest = (self.x[a] - self.x[b]).norm(dim=1)
-            self.springs.append((a, b, rest, compliance / drape.STEP**2))
+            self.springs.append((a, b, rest, compliance / drape.STEP**2, torch.zeros_like(rest)))
+        # Hundreds of small operations on a GPU: recorded once, and started by one call.
+        self.relax = recorded(self.relax, stream) if stream else self.relax
 
         scene = nearmiss.Scene()
         body = scene.add(nearmiss.Body(sheet, faces, name="cloth"))
@@ -102,25 +114,32 @@ class Cloth:
         apart = (weights[..., None] * self.x[vertices]).sum(dim=1)
         distance = apart.norm(dim=1)
         wanted = (distance + drape.OPENING * self.thickness).clamp_max(self.thickness)
-        return vertices, weights, apart / distance[:, None], wanted
+        # Features that touch to the last bit have no normal: they are not pushed.
+        return vertices, weights, apart / distance.clamp_min(1e-30)[:, None], wanted
 
     def solve(self, contacts):
         """Set the goal to the wanted end of the step, by XPBD."""
-        x = self.x.clone()
+        x = self.goal
+        x.copy_(self.x)
         x[: self.own] += drape.STEP * self.v[: self.own]
         x[: self.own, 2] -= drape.GRAVITY * drape.STEP**2
-        multipliers = [torch.zeros_like(rest) for _, _, rest, _ in self.springs]
-        for _ in range(drape.ITERATIONS):
-            for (a, b, rest, compliance), multiplier in zip(self.springs, multipliers):
-                along = x[a] - x[b]
-                length = along.norm(dim=1)
-                change = (rest - length - compliance * multiplier) / (2 + compliance)
-                multiplier += change
-                move = (change / length)[:, None] * along
-                x[a] += move
-                x[b] -= move
+        for *_, multiplier in self.springs:
+            multiplier.zero_()
+        for _ in range(self.iterations):
+            self.relax()
             self.push_apart(x, *contacts)
-        self.goal.copy_(x)
+
+    def relax(self):
+        """Correct the length of each spring of the goal once."""
+        x = self.goal
+        for a, b, rest, compliance, multiplier in self.springs:
+            along = x[a] - x[b]
+            length = along.norm(dim=1)
+            change = (rest - length - compliance * multiplier) / (2 + compliance)
+            multiplier += change
+            move = (change / length)[:, None] * along
+            x[a] += move
+            x[b] -= move
 
     def push_apart(self, x, vertices, weights, normals, wanted):
         """Move pairs that are nearer than wanted apart, and hold them by friction."""

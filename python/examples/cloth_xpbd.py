@@ -34,6 +34,7 @@ class Cloth:
         # The cloth's vertices, then those of the ball, which have no inverse mass.
         self.inverse_mass = np.repeat([1.0, 0.0], [len(self.x), len(ball)])
         self.thickness, self.reach = drape.THICKNESS / cells, drape.REACH / cells
+        self.iterations = drape.iterations(cells)
         self.springs = []
         for pairs, compliance in drape.springs(cells):
             rest = np.linalg.norm(self.x[pairs[:, 0]] - self.x[pairs[:, 1]], axis=1)
@@ -64,7 +65,7 @@ class Cloth:
         x[:own] += drape.STEP * self.v
         x[:own, 2] -= drape.GRAVITY * drape.STEP**2
         multipliers = [np.zeros(len(rest)) for _, _, rest, _ in self.springs]
-        for _ in range(drape.ITERATIONS):
+        for _ in range(self.iterations):
             for (a, b, rest, compliance), multiplier in zip(self.springs, multipliers):
                 along = x[a] - x[b]
                 length = np.linalg.norm(along, axis=1)

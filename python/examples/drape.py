@@ -9,12 +9,16 @@ GRAVITY = 9.81
 FRICTION = 0.3
 DAMPING = 2.0  # a second
 BENDING = 2e-3  # compliance of springs over two cells, seconds squared
-ITERATIONS = 20
 # In cells, below the distance of opposite parts of a cell: a flat cloth has no near pairs.
 THICKNESS, REACH = 0.15, 0.25
 OPENING = 0.2  # of the thickness: how far a pair that is too near is moved apart in a step
 PART_OF_THE_WAY = 0.9  # to a contact, so that the next step does not start with it
 ATTEMPTS = 8  # to limit a vertex, before it rests in a step
+
+
+def iterations(cells):
+    """Iterations of a step: with more cells a pull takes more of them to cross the cloth."""
+    return 20 * max(1, round(cells / 75))
 
 
 def ball(levels=4):
