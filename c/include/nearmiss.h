@@ -963,8 +963,9 @@ NearmissCode nearmiss_device_open(uint32_t backend,
 NearmissCode nearmiss_device_gpu(uint32_t ordinal, NearmissDevice **device, NearmissError *error);
 
 // A GPU by a context and a stream of the caller. All work goes to that stream, after earlier work.
-// `context` is a `CUcontext`, or NULL for the current one of the thread. `stream` is a `CUstream`
-// or a `cudaStream_t`, or NULL for the default stream, which a graph cannot capture.
+// `context` is a `CUcontext`, or NULL for that of the stream; of a default stream it is the current
+// one of the thread. `stream` is a `CUstream` or a `cudaStream_t`, or NULL for the default stream,
+// which a graph cannot capture.
 //
 // # Safety
 // The stream is of that context, and both outlive the device and all detectors made with it.
@@ -1299,6 +1300,20 @@ NearmissCode nearmiss_detector_on_device(NearmissDetector *detector,
                                          NearmissDeviceAnswer *answer,
                                          NearmissError *error);
 
+// The same for a detector on several devices: the answer of each to its share, in its memory, and
+// behind the work of its stream. An earliest query has the time of each share. There are as many
+// answers as devices, in their order. A detector on one device has one.
+//
+// Fails as `nearmiss_detector_on_device` does, and for another number of answers.
+//
+// # Safety
+// There is room for so many answers. The names of the query are texts or NULL.
+NearmissCode nearmiss_detector_on_each_device(NearmissDetector *detector,
+                                              const NearmissQuery *query,
+                                              NearmissDeviceAnswer *answers,
+                                              size_t answer_count,
+                                              NearmissError *error);
+
 // The plan of the last frame of a query, as JSON: launches (`build`, `frame`), memory by its use
 // (`buffers`), bytes copied to the device and back (`transfers`), and stages that the scene does
 // not need (`left_out`). All are the device's own counts. The text lives until the next plan of
@@ -1389,11 +1404,12 @@ void nearmiss_scene_free(NearmissScene *scene);
 // positions and finds the pairs of its share; answers and hashes are those of one device. `devices`
 // points to `device_count` handles, at least one. See `nearmiss_detector_create`.
 //
-// The detector takes the calls of any other, except `nearmiss_detector_prepare`, `_submit`,
-// `_collect`, `_on_device`, `_plan` and `_update_poses`; distances, pairs of bodies and trees are
-// not divided. These fail with `NEARMISS_INVALID_ARGUMENT`, and so do motions in memory of a GPU if
-// a device is a CPU. Motions may be in memory of any of the GPUs, behind the work of its stream;
-// all devices have read them when the call returns.
+// The detector takes the calls of any other, except `nearmiss_detector_on_device`, `_plan` and
+// `_update_poses`; distances, pairs of bodies and trees are not divided. These fail with
+// `NEARMISS_INVALID_ARGUMENT`, and so do motions in memory of a GPU if a device is a CPU. Motions
+// may be in memory of any of the GPUs, behind the work of its stream. All devices have read them
+// when `nearmiss_detector_update` returns, and before what follows a submission on that stream. No
+// CUDA graph can capture a submission.
 //
 // # Safety
 // So many handles are there. One thread at a time uses each device.

@@ -227,9 +227,9 @@ pub unsafe extern "C" fn nearmiss_detector_on_device(
     })
 }
 
-/// The same for a detector on several devices: the answer of each to its share, in its memory, behind
-/// the work of its stream. Of an earliest query each has the time of its share. As many answers as the
-/// detector has devices are written, in their order. A detector on one device has one.
+/// The same for a detector on several devices: the answer of each to its share, in its memory, and
+/// behind the work of its stream. An earliest query has the time of each share. There are as many
+/// answers as devices, in their order. A detector on one device has one.
 ///
 /// Fails as `nearmiss_detector_on_device` does, and for another number of answers.
 ///

@@ -82,7 +82,7 @@ impl MultiDetector {
     }
 
     /// As [`Detector::on_device`], for each device in their order: the rows of its share, in its
-    /// memory, behind the work of its stream. Of an earliest query each has the first contact of its
+    /// memory, behind the work of its stream. An earliest query has the first contact of each
     /// share.
     pub fn on_device(&self, query: &Query) -> Option<Vec<DeviceAnswer>> {
         let query = self.divisible(*query).ok()?;

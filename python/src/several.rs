@@ -210,8 +210,8 @@ impl MultiDetector {
 
     /// Return the answers to a prepared query in device memory, one a device; None if it is not prepared.
     ///
-    /// Each has the rows of the device's share: see Detector.on_device. Of an Earliest query each has
-    /// the time of its share.
+    /// Each has the rows of the device's share: see Detector.on_device. An Earliest query has
+    /// the time of each share.
     fn on_device(detector: Bound<'_, Self>, query: &Query) -> PyResult<Option<Vec<DeviceAnswer>>> {
         let (py, own) = (detector.py(), detector.get());
         let (answers, asked) = own.look_at(py, |one| (one.detector.on_device(&query.query), one.asked))?;

@@ -95,7 +95,7 @@ fn submissions_are_divided_and_have_the_answers_of_one_device() {
         assert_eq!(told(|error| nearmiss_detector_submit(Some(&mut several), error)), Ok(()));
         for asked in &asked {
             let parts = on_each(&mut several, asked, count).expect("prepared");
-            // SAFETY: a CPU has it in memory of the host, until the detector is asked again.
+            // SAFETY: a CPU has it in memory of the host, until the next call.
             let rows = parts.iter().map(|part| unsafe { &*(part.status as *const NearmissFrameStatus) });
             let rows: u64 = rows.map(|status| status.first + status.second).sum();
             let found = summary(&collect(&mut several, asked).expect("an answer"));
