@@ -84,7 +84,7 @@ impl NearNarrow {
         let count = vf.capacity() + ee.capacity();
         if !self.radii.is_empty() {
             let args = ThickNearArgs { near: args, radii: self.radii.span(), tables: given.excluded };
-            return launch::at_once::<R::ThickNear>(given.device, count, &args);
+            return launch::striding::<R::ThickNear>(given.device, count, &args);
         }
         if self.excludes {
             let args = NearExcludingArgs { near: args, tables: given.excluded };

@@ -5,8 +5,9 @@
 //!          on a CPU in vectors.
 //!          The same lane measures the rest in f64. Numbering these first, within a stretch of a
 //!          block of 128, takes a third longer on an H200 (`benches/NOTES.md`).
-//!          With a thickness or exclusions a warp a block, as many blocks as are resident. There
-//!          the rest wait on chip until there is one a lane: a measured pair costs more.
+//!          With exclusions a warp a block, as many blocks as are resident. There the rest wait on
+//!          chip until there is one a lane: a measured pair costs more. With a thickness that takes
+//!          longer: its registers leave few warps.
 //! Reads    candidates, faces or edges, positions (four vertices).
 //! Writes   pairs with squared distance and nearest points; the number of pairs that are not
 //!          certainly within the distance.
@@ -99,7 +100,6 @@ fn both<R: Real, B: Block>(
 /// Both kinds, of vertices with a thickness, without pairs that the scene excludes.
 pub fn thick<R: Real, B: Block>(block: &mut B, args: &ThickNearArgs<R>) {
     let ThickNearArgs { near, radii, tables } = args;
-    let mut waiting = Waiting::new(block);
     let vf = |lane: &B::Lane, pair: Pair| {
         let [x, y, z] = lane.read(near.faces, pair.b);
         [pair.a, x, y, z]
@@ -111,9 +111,9 @@ pub fn thick<R: Real, B: Block>(block: &mut B, args: &ThickNearArgs<R>) {
     let points = |lane: &B::Lane, of: [u32; 4]| of.map(|vertex| lane.read(near.positions, vertex));
     // In f32 the radius of a point is rounded up.
     let exact = |lane: &B::Lane, of: [u32; 4]| of.map(|vertex| lane.read(*radii, vertex));
-    in_full_warps(
+    each(
         block,
-        &mut waiting,
+        None,
         (near.vf, near.vf_hits, near.counters),
         &ThickFilter::<R, true>::new(near.distance),
         |lane, pair| points(lane, vf(lane, pair)),
@@ -122,9 +122,9 @@ pub fn thick<R: Real, B: Block>(block: &mut B, args: &ThickNearArgs<R>) {
             found.filter(|_| !exclude::vertex_face(lane, tables, near.faces, pair))
         },
     );
-    in_full_warps(
+    each(
         block,
-        &mut waiting,
+        None,
         (near.ee, near.ee_hits, near.counters),
         &ThickFilter::<R, false>::new(near.distance),
         |lane, pair| points(lane, ee(lane, pair)),
