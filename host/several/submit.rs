@@ -41,7 +41,7 @@ impl MultiDetector {
             self.each_numbered(|part, detector| {
                 let own = lent[part].iter().filter_map(|(id, motion)| match motion {
                     Motion::OnDevice(own) => Some((*id, *own)),
-                    _ => None,
+                    Motion::Positions(_) | Motion::Step(_) | Motion::Pose(_) | Motion::PoseStep(_) => None,
                 });
                 detector.prepare(&own.collect::<Vec<_>>(), &queries)
             })?;

@@ -73,7 +73,7 @@ fn null_is_refused_everywhere() {
 fn an_unknown_machine_is_refused() {
     let unknown = got(|to, e| nearmiss_device_open(9, 0, to, e));
     refused(unknown, NEARMISS_INVALID_ARGUMENT, "backend is unknown, got 9");
-    refused(got(|to, e| nearmiss_device_gpu(u32::MAX, to, e)), NEARMISS_DEVICE, "opening");
+    refused(got(|to, e| nearmiss_device_gpu(u32::MAX, to, e)), NEARMISS_DEVICE, "run on the CPU");
 }
 
 #[test]

@@ -67,8 +67,8 @@ class Device:
     - `backend`: "auto" (a GPU if there is one, else the CPU), "cpu" or "cuda".
     - `threads`: threads of the CPU, 1 to 1024, at most one a processor. Default: all.
     - `gpu`: number of a GPU. It gets a stream of its own.
-    - `stream`: your stream, on the GPU that this thread is bound to: a stream of torch or cupy, an
-      object with __cuda_stream__, or a handle (0: the default stream). All work goes there. It must
+    - `stream`: your stream, of any GPU: a stream of torch or cupy, an object with __cuda_stream__, or a
+      handle (0: the default stream of the GPU that this thread is bound to). All work goes there. It must
       outlive the device; its context also every answer and every array of one.
     - `memory_limit`: most bytes of device memory to take, at least 1. Default: all there are.
 
@@ -1348,8 +1348,8 @@ class MultiDetector:
     - `scene`: a Scene, or one Body, whose number is then 0.
     - `devices`: at least one Device, such as [Device(gpu=0), Device(gpu=1)].
 
-    Takes Discrete, Continuous, Earliest and Near. Each device has a copy of positions. There are no
-    submissions. Raises InvalidArgumentError without devices.
+    Takes Discrete, Continuous, Earliest and Near. Each device has a copy of positions. Raises
+    InvalidArgumentError without devices.
     """
 
     def __new__(cls, scene: Scene | Body, devices: Sequence[Device]) -> MultiDetector: ...
@@ -1376,6 +1376,34 @@ class MultiDetector:
 
         As `update` and `query`. An error of the motions or of the query has moved nothing.
         """
+
+    def prepare(self, inputs: Motions, queries: Iterable[Query[Any]]) -> None:
+        """Prepare submissions: see Detector.prepare.
+
+        Arrays may be on any of the GPUs; every submission copies them to the others. The work is
+        divided by what it costs now, until the next preparation.
+        """
+
+    @property
+    def is_prepared(self) -> bool:
+        """Whether `submit` may be called."""
+
+    def submit(self) -> None:
+        """Launch the prepared queries on the streams of all GPUs: see Detector.submit.
+
+        The stream of a GPU that has arrays goes on when the others have their copies. No graph can
+        record it.
+        """
+
+    def on_device(self, query: Query[Any]) -> list[DeviceAnswer] | None:
+        """Return the answers to a prepared query in device memory, one a device; None if it is not prepared.
+
+        Each has the rows of the device's share: see Detector.on_device. An Earliest query has
+        the time of each share.
+        """
+
+    def collect(self, query: Query[_A]) -> _A:
+        """Wait for the last submission, and return the answer to one of its queries: see Detector.collect."""
 
     @overload
     def geometry(self, answer: Contacts | NearPairs) -> Geometry:
