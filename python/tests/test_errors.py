@@ -45,7 +45,7 @@ REFUSED = [
     (lambda: nm.Device("gpu"), nm.InvalidArgumentError, '"cuda"'),
     (lambda: nm.Device("cpu", gpu=0), nm.InvalidArgumentError, "threads for a CPU"),
     (lambda: nm.Device("cpu", memory_limit=0), nm.InvalidArgumentError, "memory_limit must be an integer from 1"),
-    (lambda: nm.Device(gpu=0, stream=1), nm.InvalidArgumentError, "a stream is of the GPU"),
+    (lambda: nm.Device(gpu=0, stream=1), nm.InvalidArgumentError, "gpu or stream for a GPU"),
     (lambda: nm.Device(stream="mine"), nm.InvalidArgumentError, "stream must be a stream of CUDA, got str"),
     (lambda: nm.Body(V, F, kind="soft"), nm.InvalidArgumentError, '"rigid"'),
     (lambda: nm.Body(V[:, :2], F, name="flat"), nm.InvalidArgumentError, "vertices of flat of shape [6, 2]"),
