@@ -14,6 +14,8 @@ pub(super) struct Copies {
     buffers: Vec<Option<Buffer<u64>>>,
     /// Copies of the last update, one for each of the first buffers.
     transfers: Vec<Transfer>,
+    /// Indices of devices on the same GPU, with streams of their own, whose memory it reads in place.
+    in_place: BTreeSet<usize>,
 }
 
 /// A copy of another GPU's memory.
@@ -60,7 +62,8 @@ impl MultiDetector {
     }
 
     /// Copies the memory of the last update again: after what its GPUs' streams did so far, and
-    /// before what they do next. The host does not wait.
+    /// before what they do next. Devices that read in place come after that too. The host does not
+    /// wait.
     ///
     /// # Errors
     /// [`Error::Device`].
@@ -68,9 +71,23 @@ impl MultiDetector {
         let devices: Vec<Device> = self.parts.iter().map(|part| part.device().clone()).collect();
         for (device, copies) in devices.iter().zip(&mut self.copies) {
             let owners: BTreeSet<usize> = copies.transfers.iter().map(|transfer| transfer.owner).collect();
-            owners.iter().try_for_each(|&owner| device.follow(&devices[owner]))?;
+            let all = owners.union(&copies.in_place);
+            all.into_iter().try_for_each(|&owner| device.follow(&devices[owner]))?;
             copies.copy(device, &devices)?;
             owners.iter().try_for_each(|&owner| devices[owner].follow(device))?;
+        }
+        Ok(())
+    }
+
+    /// Puts what follows on the stream of each device whose memory another one reads in place after
+    /// the submission of that one.
+    ///
+    /// # Errors
+    /// [`Error::Device`].
+    pub(super) fn wait_for_readers(&self) -> Result<(), Error> {
+        for (part, copies) in self.parts.iter().zip(&self.copies) {
+            let follow = |&owner: &usize| self.parts[owner].device().follow(part.device());
+            copies.in_place.iter().try_for_each(follow)?;
         }
         Ok(())
     }
@@ -85,6 +102,7 @@ impl Copies {
         motions: &[(BodyId, Motion<'a>)],
     ) -> Result<Motions<'a>, Error> {
         self.transfers.clear();
+        self.in_place.clear();
         let mut lent = motions.to_vec();
         for (id, input) in &mut lent {
             if let Motion::OnDevice(motion) = input {
@@ -106,13 +124,17 @@ impl Copies {
     ) -> Result<DeviceRows, Error> {
         let bytes = rows.span(width);
         let owner = if bytes == 0 { None } else { device.gpu_of(rows.address())? };
-        if owner.is_none() || owner == device.ordinal() {
-            return Ok(rows);
-        }
+        let Some(gpu) = owner else { return Ok(rows) };
         let Some(at) = devices.iter().position(|other| other.ordinal() == owner) else {
-            let what = format!("positions of body {id} are in memory of GPU {}", owner.unwrap_or_default());
+            let what = format!("positions of body {id} are in memory of GPU {gpu}");
             return Err(refused(&what, "put them on a device of the detector"));
         };
+        if owner == device.ordinal() {
+            if !devices[at].is(device) {
+                self.in_place.insert(at);
+            }
+            return Ok(rows);
+        }
         let (words, place) = (bytes.div_ceil(size_of::<u64>()), self.transfers.len());
         self.transfers.push(Transfer { owner: at, address: rows.address(), bytes });
         self.buffers.resize_with(self.buffers.len().max(place + 1), || None);

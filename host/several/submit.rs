@@ -58,8 +58,9 @@ impl MultiDetector {
         self.parts.iter().all(Detector::is_prepared)
     }
 
-    /// As [`Detector::submit`]. On each GPU the work follows that of the other GPUs' streams which
-    /// have its memory, and what these streams do next follows the copies. No graph can record it.
+    /// As [`Detector::submit`]. On each GPU the work follows that of the streams whose GPUs have the
+    /// memory, and what these streams do next follows the copies. If several devices are one GPU, the
+    /// stream is the first one's. No graph can record it.
     ///
     /// # Errors
     /// As there.
@@ -73,6 +74,7 @@ impl MultiDetector {
             true => self.one_by_one(|_, detector| detector.submit()).map(drop),
             false => self.each(Detector::submit).map(drop),
         });
+        let submitted = submitted.and_then(|()| self.wait_for_readers());
         self.ended(submitted)
     }
 
