@@ -49,7 +49,7 @@ fn crowd(n: usize) -> (Scene, BodyId, [Vec<[f32; 3]>; 2]) {
 
 /// Ends of a step in a frame: in the third all triangles come nearer to each other.
 fn ends_of(ends: &[Vec<[f32; 3]>; 2], frame: usize) -> [Vec<[f32; 3]>; 2] {
-    let (push, scale) = (0.01 * frame as f32, if frame == 3 { 0.2 } else { 1.0 });
+    let (push, scale) = (0.01 * frame as f32, if frame == 3 { 0.02 } else { 1.0 });
     ends.each_ref().map(|points| points.iter().map(|p| p.map(|x| scale * x + push)).collect())
 }
 
