@@ -94,6 +94,12 @@ impl MultiDetector {
 }
 
 impl Copies {
+    /// Forgets the memory of the last update: nothing copies it again.
+    pub(super) fn forget(&mut self) {
+        self.transfers.clear();
+        self.in_place.clear();
+    }
+
     /// Returns the motions as `device` reads them.
     fn motions<'a>(
         &mut self,
@@ -101,8 +107,6 @@ impl Copies {
         devices: &[Device],
         motions: &[(BodyId, Motion<'a>)],
     ) -> Result<Motions<'a>, Error> {
-        self.transfers.clear();
-        self.in_place.clear();
         let mut lent = motions.to_vec();
         for (id, input) in &mut lent {
             if let Motion::OnDevice(motion) = input {

@@ -1,6 +1,7 @@
 //! Submitted frames of several devices, for which the host does not wait.
 
 use super::MultiDetector;
+use super::lent::Copies;
 use crate::contacts::{Answer, Contacts, DeviceAnswer};
 use crate::detector::{Detector, check_submission};
 use crate::error::Error;
@@ -24,6 +25,8 @@ impl MultiDetector {
         check_submission(queries)?;
         let queries: Vec<Query> =
             queries.iter().map(|query| self.divisible(*query)).collect::<Result<_, _>>()?;
+        // Arrays of an earlier preparation may be gone.
+        self.unprepare();
         let given: Vec<(BodyId, Motion)> =
             motions.iter().map(|&(id, motion)| (id, Motion::OnDevice(motion))).collect();
         let in_motion = queries.iter().find(|query| !query.kind().is_at_rest());
@@ -81,6 +84,7 @@ impl MultiDetector {
     /// As [`Detector::unprepare`].
     pub fn unprepare(&mut self) {
         self.parts.iter_mut().for_each(Detector::unprepare);
+        self.copies.iter_mut().for_each(Copies::forget);
     }
 
     /// As [`Detector::on_device`], for each device in their order: the rows of its share, in its
