@@ -31,20 +31,20 @@ fn soup(n: usize, seed: u64) -> (Mesh, [Vec<[f32; 3]>; 2]) {
 }
 
 /// Points in a device's memory, as a simulator has them: four numbers a row, of which the last is none.
-struct Points {
+pub struct Points {
     buffer: Buffer<[f32; 4]>,
 }
 
 impl Points {
-    fn new(device: &Device, points: &[[f32; 3]]) -> Points {
+    pub fn new(device: &Device, points: &[[f32; 3]]) -> Points {
         Points { buffer: device.upload(&padded(points)).expect("memory") }
     }
 
-    fn write(&mut self, points: &[[f32; 3]]) {
+    pub fn write(&mut self, points: &[[f32; 3]]) {
         self.buffer.write(&padded(points)).expect("written");
     }
 
-    fn rows(&self) -> DeviceRows {
+    pub fn rows(&self) -> DeviceRows {
         let (address, rows) = (self.buffer.span().addr(), self.buffer.len());
         // SAFETY: tests keep the buffer as long as its detector, and write it between frames.
         unsafe { DeviceRows::new(address, rows, 16, Number::F32) }.expect("rows")
@@ -67,7 +67,7 @@ fn query(kind: QueryKind) -> Query {
 }
 
 /// A cloth-like soup that is tested against itself, and one that stands still.
-fn pair(n: usize) -> (Scene, BodyId, [Vec<[f32; 3]>; 2]) {
+pub fn pair(n: usize) -> (Scene, BodyId, [Vec<[f32; 3]>; 2]) {
     let (mesh, ends) = soup(n, 1);
     let mut scene = Scene::new();
     let id = scene.add(Body::deformable(mesh).with_filter(CollisionFilter::with_self_collision()));

@@ -1,50 +1,16 @@
 //! Submitted frames of several devices: to the bit the frames of one.
 
+use crate::submit::{Points, pair};
 use nearmiss::device::emulator::{Emulator, Mode};
-use nearmiss::mesh::{Mesh, Positions};
+use nearmiss::mesh::Positions;
 use nearmiss::query::{Query, QueryKind};
-use nearmiss::scene::{BodyId, CollisionFilter, DeviceMotion, DeviceRows, Motion, Number, Scene};
-use nearmiss::{Body, Detector, Device, Error, MultiDetector};
-use nearmiss_lab::scene;
-use std::cell::Cell;
+use nearmiss::scene::{DeviceMotion, Motion};
+use nearmiss::{Detector, Device, Error, MultiDetector};
 use support::{asked, engine};
-
-/// Points that a test writes between frames, where a CPU's detectors read them.
-struct Points(Vec<Cell<[f32; 3]>>);
-
-impl Points {
-    fn new(points: &[[f32; 3]]) -> Points {
-        Points(points.iter().map(|&point| Cell::new(point)).collect())
-    }
-
-    fn write(&self, points: &[[f32; 3]]) {
-        self.0.iter().zip(points).for_each(|(cell, &point)| cell.set(point));
-    }
-
-    fn rows(&self) -> DeviceRows {
-        // SAFETY: the points are there as long as the test, which writes them between frames.
-        unsafe { DeviceRows::new(self.0.as_ptr() as u64, self.0.len(), 12, Number::F32) }.expect("rows")
-    }
-}
 
 /// A CPU with blocks of that many lanes.
 fn blocks(lanes: u32) -> Device {
     Device::emulator(Emulator::new(Mode::Engine, Some(1)).expect("a thread").with_lanes(lanes))
-}
-
-/// Random triangles that are tested against themselves and against others that stand still; both ends
-/// of a step.
-fn crowd(n: usize) -> (Scene, BodyId, [Vec<[f32; 3]>; 2]) {
-    let body = scene::soup(n, 1, true).expect("a scene");
-    let ends = body.ends().map(|positions| match positions {
-        Positions::F32(points) => points.clone(),
-        Positions::F64(_) => panic!("in single precision"),
-    });
-    let mesh: Mesh = body.frames().swap_remove(0);
-    let mut scene = Scene::new();
-    let id = scene.add(Body::deformable(mesh).with_filter(CollisionFilter::with_self_collision()));
-    scene.add(Body::fixed(scene::soup(n / 2, 2, false).expect("a scene").frames().swap_remove(0)));
-    (scene, id, ends)
 }
 
 /// Ends of a step in a frame: in the third all triangles come nearer to each other.
@@ -61,16 +27,16 @@ fn four_queries() -> Vec<Query> {
 /// Submits frames on these devices, and compares each with one of a single device. Returns the frames
 /// whose lists were too short.
 fn agrees(devices: Vec<Device>) -> usize {
-    let (scene, id, ends) = crowd(300);
+    let (scene, id, ends) = pair(300);
     let queries = four_queries();
     let mut one = Detector::new(engine(), scene.clone()).expect("a detector");
     let mut several = MultiDetector::new(devices, scene).expect("detectors");
-    let memory = ends.each_ref().map(|points| Points::new(points));
+    let mut memory = ends.each_ref().map(|points| Points::new(&engine(), points));
     let input = [(id, DeviceMotion::Step([memory[0].rows(), memory[1].rows()]))];
     let mut short = 0;
     for frame in 0..5 {
         let ends = ends_of(&ends, frame);
-        memory.iter().zip(&ends).for_each(|(memory, points)| memory.write(points));
+        memory.iter_mut().zip(&ends).for_each(|(memory, points)| memory.write(points));
         if !several.is_prepared() {
             several.prepare(&input, &queries).expect("prepared");
             assert!(several.is_prepared());
@@ -104,9 +70,9 @@ fn frames_are_those_of_one_device() {
 
 #[test]
 fn every_device_has_the_rows_of_its_share_in_its_memory() {
-    let (scene, id, ends) = crowd(300);
+    let (scene, id, ends) = pair(300);
     let mut several = MultiDetector::new(vec![engine(), engine(), engine()], scene).expect("detectors");
-    let memory = ends.each_ref().map(|points| Points::new(points));
+    let memory = ends.each_ref().map(|points| Points::new(&engine(), points));
     let input = [(id, DeviceMotion::Step([memory[0].rows(), memory[1].rows()]))];
     let queries = [asked::of(QueryKind::Continuous), asked::of(QueryKind::Discrete)];
     assert!(several.on_device(&queries[0]).is_none());
@@ -133,10 +99,10 @@ type Call<'a> = dyn FnMut(&mut MultiDetector) + 'a;
 
 #[test]
 fn what_ends_a_preparation_and_what_is_refused() {
-    let (scene, id, ends) = crowd(100);
+    let (scene, id, ends) = pair(100);
     let other = scene.ids().nth(1).expect("a second body");
     let mut several = MultiDetector::new(vec![engine(), engine()], scene).expect("detectors");
-    let memory = ends.each_ref().map(|points| Points::new(points));
+    let memory = ends.each_ref().map(|points| Points::new(&engine(), points));
     let input = [(id, DeviceMotion::Step([memory[0].rows(), memory[1].rows()]))];
     let near = Query::near(0.02);
     let refused = |done: Result<(), Error>, what: &str| {
@@ -176,9 +142,9 @@ fn what_ends_a_preparation_and_what_is_refused() {
 
 #[test]
 fn positions_that_are_not_finite_are_named() {
-    let (scene, id, ends) = crowd(100);
+    let (scene, id, ends) = pair(100);
     let mut several = MultiDetector::new(vec![engine(), engine()], scene).expect("detectors");
-    let memory = Points::new(&ends[0]);
+    let mut memory = Points::new(&engine(), &ends[0]);
     let input = [(id, DeviceMotion::Positions(memory.rows()))];
     let near = Query::near(0.02);
     several.prepare(&input, &[near]).expect("prepared");
