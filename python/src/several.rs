@@ -35,7 +35,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// InvalidArgumentError without devices.
 #[pyclass(module = "nearmiss", frozen)]
 pub struct MultiDetector {
-    one: Mutex<Asked<nearmiss::MultiDetector>>,
+    one: Mutex<Several>,
     devices: Vec<Py<Device>>,
     /// Ends its calls.
     interrupt: Interrupt,
