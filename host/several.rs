@@ -4,6 +4,7 @@ mod cuts;
 mod division;
 mod edits;
 mod first;
+mod grouped;
 mod interrupted;
 mod left_out;
 mod lent;

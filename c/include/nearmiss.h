@@ -377,6 +377,30 @@ typedef uint32_t NearmissRebuild;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
+// Features of a body by which rows are grouped.
+enum NearmissGroupBy
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // Vertices: of vertex/face and edge/vertex rows, and both of two points.
+    NEARMISS_BY_VERTEX = 0,
+    // Edges: both of edge/edge rows, and those of edge/vertex rows.
+    NEARMISS_BY_EDGE = 1,
+    // Triangles, then edges of none, then points: faces of vertex/face rows, and both of a
+    // triangle pair.
+    NEARMISS_BY_FACE = 2,
+    // All vertices that take part in a row: four of a row of features, six of a triangle pair.
+    NEARMISS_BY_CORNER = 3,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum NearmissGroupBy NearmissGroupBy;
+#else
+typedef uint32_t NearmissGroupBy;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
 // The answer to a query. It never changes, and needs neither detector nor device.
 typedef struct NearmissAnswer NearmissAnswer;
 
@@ -676,6 +700,41 @@ typedef struct {
     // the largest coordinate.
     double error;
 } NearmissPairGeometry;
+
+// Rows by feature. The rows of feature i are `rows[starts[i]]` to `rows[starts[i + 1] - 1]`,
+// ascending.
+typedef struct {
+    // Start of each feature's rows, and their end: one number more than features.
+    const uint32_t *starts;
+    // Indices of rows in the answer.
+    const uint32_t *rows;
+    // Number of features: of all vertices, edges or faces of the body.
+    size_t feature_count;
+    // Number of entries of `rows`.
+    size_t row_count;
+} NearmissGrouped;
+
+// Curves in which surfaces cross. Curve k has the points `points[starts[k]]` to
+// `points[starts[k + 1] - 1]`; a closed curve has its first point again at its end. Segments are
+// one less than points, so those of curve k begin at `rows[starts[k] - k]`.
+typedef struct {
+    // Points of all curves, curve by curve, in scene units.
+    const double (*points)[3];
+    // First point of each curve, and the number of points: one number more than curves.
+    const size_t *starts;
+    // Whether each curve is closed.
+    const bool *is_closed;
+    // Row of each segment.
+    const uint32_t *rows;
+    // Group of each curve. Rows that share a triangle or an end are in one group.
+    const uint32_t *groups;
+    // Group of each row of the answer: UINT32_MAX for rows that do not cross.
+    const uint32_t *row_groups;
+    // Number of curves.
+    size_t curve_count;
+    // Number of rows of the answer.
+    size_t row_count;
+} NearmissCurves;
 
 // A list in memory of the device.
 typedef struct {
@@ -1172,6 +1231,46 @@ NearmissCode nearmiss_detector_pair_geometry(NearmissDetector *detector,
                                              const NearmissPairGeometry **items,
                                              size_t *count,
                                              NearmissError *error);
+
+// Groups the rows of an answer to a continuous, near or discrete query by features of a body. `by`
+// is a `NearmissGroupBy`; triangle pairs have faces and corners alone. The bodies must be those of
+// the query. The lists live until the next call of this function with the answer. Cost: linear, on
+// the host.
+//
+// Fails with `NEARMISS_INVALID_ARGUMENT` for other answers, and if there is no such body.
+NearmissCode nearmiss_detector_grouped(NearmissDetector *detector,
+                                       NearmissAnswer *answer,
+                                       uint32_t body,
+                                       uint32_t by,
+                                       NearmissGrouped *grouped,
+                                       NearmissError *error);
+
+// The least time of contact, or the least distance, of each vertex of a body: over the rows of an
+// answer to a continuous or a near query in which it takes part, infinity without one. Times are
+// `toi`; distances are those of surfaces, without thickness. The list lives until the next call of
+// this function with the answer.
+//
+// Vertices that stop at different times leave the straight lines that were tested: query the
+// shortened step again. Fails as `nearmiss_detector_grouped`.
+NearmissCode nearmiss_detector_least_by_vertex(NearmissDetector *detector,
+                                               NearmissAnswer *answer,
+                                               uint32_t body,
+                                               const double **items,
+                                               size_t *count,
+                                               NearmissError *error);
+
+// The curves in which surfaces cross: the segments of the rows of an answer to a discrete query
+// that cross, chained by the vertices, edges and faces that hold their ends. The bodies must be
+// where they were at the query. The lists live until the next call of this function with the
+// answer. Cost: that of `nearmiss_detector_pair_geometry`.
+//
+// A curve ends at a border of a mesh, at a seam of vertices with equal coordinates, where it runs
+// along an edge that is on a face, and where more than two surfaces meet. It runs along the product
+// of both normals, the first row's first triangle times its second.
+NearmissCode nearmiss_detector_curves(NearmissDetector *detector,
+                                      NearmissAnswer *answer,
+                                      NearmissCurves *curves,
+                                      NearmissError *error);
 
 // Makes a handle, for `nearmiss_device_with_interrupt`.
 NearmissCode nearmiss_interrupt_create(NearmissInterrupt **interrupt, NearmissError *error);

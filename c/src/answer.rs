@@ -2,9 +2,11 @@
 
 use crate::error::{NearmissCode, NearmissError, call, free, given, refused};
 use crate::geometry::{NearmissGeometry, NearmissPairGeometry};
+use crate::grouped::ShownCurves;
 use crate::records::{
     NearmissBodyPair, NearmissContact, NearmissNearPair, NearmissNearest, NearmissTrianglePair,
 };
+use nearmiss::contacts::Grouped;
 use nearmiss::{Contacts, Error, Rows};
 use std::ffi::{CString, c_char};
 use std::mem::MaybeUninit;
@@ -15,6 +17,9 @@ pub struct NearmissAnswer {
     shown: Shown,
     pub(crate) geometry: Vec<NearmissGeometry>,
     pub(crate) pairs: Vec<NearmissPairGeometry>,
+    pub(crate) grouped: Grouped,
+    pub(crate) least: Vec<f64>,
+    pub(crate) curves: ShownCurves,
     pub(crate) caveats: Vec<CString>,
     pub(crate) notes: Vec<CString>,
     pub(crate) peak: u64,
@@ -45,8 +50,23 @@ impl NearmissAnswer {
             Rows::BodyDistances(all) => Shown::BodyDistances(all.iter().map(Into::into).collect()),
         };
         let caveats = found.caveats().iter().map(sentence).collect();
-        let (geometry, pairs) = (Vec::new(), Vec::new());
-        Ok(NearmissAnswer { found, shown, geometry, pairs, caveats, notes: Vec::new(), peak })
+        Ok(NearmissAnswer {
+            found,
+            shown,
+            geometry: Vec::new(),
+            pairs: Vec::new(),
+            grouped: Grouped::default(),
+            least: Vec::new(),
+            curves: ShownCurves::default(),
+            caveats,
+            notes: Vec::new(),
+            peak,
+        })
+    }
+
+    /// Refuses answers without triangle pairs.
+    pub(crate) fn require_pairs(&self) -> Result<(), Error> {
+        if let Rows::Pairs(_) = self.found.rows { Ok(()) } else { Err(self.without("triangle pairs")) }
     }
 
     /// Rows that the answer does not have.

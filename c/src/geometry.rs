@@ -133,7 +133,7 @@ pub extern "C" fn nearmiss_detector_pair_geometry(
     NearmissDetector::work(detector, error, |own| {
         let answer = given(answer, "answer")?;
         answer.pairs = Vec::new();
-        let Rows::Pairs(_) = answer.found.rows else { return Err(answer.without("triangle pairs")) };
+        answer.require_pairs()?;
         let found = own.detector.geometry(&answer.found)?;
         let bytes = found.len() * size_of::<NearmissPairGeometry>();
         nearmiss::memory::require("geometry of pairs", bytes as u64)?;

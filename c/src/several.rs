@@ -6,7 +6,7 @@ use crate::error::{NearmissCode, NearmissError, given, make, refused};
 use crate::query::NearmissQuery;
 use crate::rows::items;
 use crate::scene::NearmissScene;
-use nearmiss::contacts::{DeviceAnswer, First, Located, Note, RowList};
+use nearmiss::contacts::{DeviceAnswer, First, GroupBy, Grouped, Located, Note, RowList};
 use nearmiss::scene::{BodyId, DeviceMotion, Exclusions, Motion, Scene, Thickness};
 use nearmiss::words::counted;
 use nearmiss::{Answer, Body, Contact, Contacts, Detector, Error, Interrupt, MultiDetector, Query};
@@ -123,6 +123,14 @@ impl Machines {
 
     pub(crate) fn geometry<T: Located>(&mut self, found: &Answer<T>) -> Result<T::Geometry, Error> {
         both!(self, own => own.geometry(found))
+    }
+
+    pub(crate) fn grouped(&mut self, found: &Contacts, body: BodyId, by: GroupBy) -> Result<Grouped, Error> {
+        both!(self, own => own.grouped(found, body, by))
+    }
+
+    pub(crate) fn least_by_vertex(&mut self, found: &Contacts, body: BodyId) -> Result<Vec<f64>, Error> {
+        both!(self, own => own.least_by_vertex(found, body))
     }
 
     pub(crate) fn notes(&self, found: &Contacts) -> Vec<Note> {

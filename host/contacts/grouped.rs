@@ -33,7 +33,7 @@ impl GroupBy {
 
 /// Rows by feature, in compressed form: the rows of feature `i` are
 /// `rows[starts[i]..starts[i + 1]]`, ascending.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Grouped {
     /// One more than there are features.
     pub starts: Vec<u32>,
@@ -72,7 +72,7 @@ impl Grouped {
 
     /// Number of features.
     pub fn len(&self) -> usize {
-        self.starts.len() - 1
+        self.starts.len().saturating_sub(1)
     }
 
     /// Whether the body has no such features.

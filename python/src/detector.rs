@@ -130,7 +130,7 @@ impl Detector {
     /// also ends in a point of three surfaces.
     /// Raises InvalidArgumentError for other answers.
     fn curves(&self, py: Python<'_>, answer: PyRef<'_, TrianglePairs>) -> PyResult<Curves> {
-        self.work_of(py, answer.as_super(), Curves::of)
+        self.work_of(py, answer.as_super(), |own, found| Curves::of(&own.geometry(found)?, own.scene()))
     }
 
     /// Return all figures of an answer as a dictionary, as the program prints them with --json.

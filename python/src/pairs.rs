@@ -2,9 +2,9 @@
 
 use crate::columns::Columns;
 use crate::host::rows;
-use nearmiss::Error;
-use nearmiss::contacts::{Curves as Found, PairGeometry as Pair, Part, crossing_curves};
+use nearmiss::contacts::{Curves as Found, Geometry, PairGeometry as Pair, Part, crossing_curves};
 use nearmiss::words::counted;
+use nearmiss::{Error, Scene};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 
@@ -96,9 +96,9 @@ impl Curves {
     /// Returns the curves of an answer's rows.
     ///
     /// # Errors
-    /// As of `Detector::geometry`, and of `crossing_curves`.
-    pub fn of(detector: &mut nearmiss::Detector, found: &nearmiss::Contacts) -> Result<Curves, Error> {
-        let curves = crossing_curves(detector.geometry(found)?.pairs(), detector.scene().bodies());
+    /// As of `crossing_curves`.
+    pub fn of(geometry: &Geometry, scene: &Scene) -> Result<Curves, Error> {
+        let curves = crossing_curves(geometry.pairs(), scene.bodies());
         curves.map(|found| Curves { found, columns: Columns::default() })
     }
 }

@@ -11,8 +11,9 @@ use crate::geometry;
 use crate::key::{self, Key, Pairs, body_of, numbers, pairs_of};
 use crate::on_device::{DeviceAnswer, Owner};
 use crate::opened::take;
+use crate::pairs::Curves;
 use crate::query::{Query, queries_of};
-use crate::rows::FirstContact;
+use crate::rows::{FirstContact, TrianglePairs};
 use crate::scene::{Body, scene_of};
 use crate::thickness::thickness_of;
 use crate::turns::python;
@@ -89,6 +90,19 @@ impl MultiDetector {
         locks.map(|lock| lock.lock().unwrap_or_else(PoisonError::into_inner)).collect()
     }
 
+    /// Works with an answer of this detector, while bodies are where it found them.
+    pub fn work_of<T: Send>(
+        &self,
+        py: Python<'_>,
+        answer: &Answer,
+        work: impl FnOnce(&mut nearmiss::MultiDetector, &nearmiss::Contacts) -> Result<T, Error> + Send,
+    ) -> PyResult<T> {
+        self.run(py, Does::Reads, |one| {
+            one.check(answer.stamp)?;
+            work(&mut one.detector, &answer.contacts)
+        })
+    }
+
     /// Looks at the detector.
     fn look<T: Send>(
         &self,
@@ -125,7 +139,7 @@ impl MultiDetector {
         Frame::of(named.into_iter().zip(places).collect(), Reader { devices: &devices, in_place })
     }
 
-    fn body(&self, py: Python<'_>, body: Key) -> PyResult<BodyId> {
+    pub fn body(&self, py: Python<'_>, body: Key) -> PyResult<BodyId> {
         let [id] = self.look(py, |detector| key::each(detector.scene(), &[body]))?.map_err(raised)?;
         Ok(id)
     }
@@ -230,11 +244,12 @@ impl MultiDetector {
 
     /// Return where the features or triangles of an answer's rows meet: see Detector.geometry.
     fn geometry<'py>(&self, py: Python<'py>, answer: &Answer) -> Answered<'py> {
-        let places = self.run(py, Does::Reads, |one| {
-            one.check(answer.stamp)?;
-            one.detector.geometry(&answer.contacts)
-        })?;
-        geometry::typed(py, places)
+        geometry::typed(py, self.work_of(py, answer, |detector, found| detector.geometry(found))?)
+    }
+
+    /// Return the curves in which surfaces cross: see Detector.curves.
+    fn curves(&self, py: Python<'_>, answer: PyRef<'_, TrianglePairs>) -> PyResult<Curves> {
+        self.work_of(py, answer.as_super(), |own, found| Curves::of(&own.geometry(found)?, own.scene()))
     }
 
     /// Return the contacts at the time of an earliest answer: see Detector.first_contacts.

@@ -59,7 +59,21 @@ def test_answers_are_those_of_one_device(count):
         assert len(shares) == count and abs(sum(share["tiles"] for share in shares) - 1) < 1e-9
     first = one.first_contacts(one.earliest())
     assert len(first) > 0 and same(first, several.first_contacts(several.query(Earliest())))
-    # Places, too.
+    # Curves, rows by feature and places, too.
+    a, b = one.discrete(), several.query(Discrete())
+    wanted, curves = one.curves(a), several.curves(b)
+    assert len(wanted) > 10
+    for column in ["points", "starts", "is_closed", "rows", "groups", "row_groups"]:
+        np.testing.assert_array_equal(getattr(wanted, column), getattr(curves, column))
+    a, b = one.near(0.01), several.query(Near(0.01))
+    for by in ["vertex", "edge", "face", "corner"]:
+        for wanted, found in zip(one.grouped(a, 1, by), several.grouped(b, 1, by), strict=True):
+            np.testing.assert_array_equal(wanted, found)
+    least = several.least_by_vertex(b, "soup 1")
+    assert np.isfinite(least).any()
+    np.testing.assert_array_equal(one.least_by_vertex(a, 1), least)
+    with pytest.raises(nearmiss.InvalidArgumentError, match="of another detector"):
+        several.grouped(a, 1)
     a, b = one.geometry(one.near(0.01)), several.geometry(several.query(Near(0.01)))
     for column in ["owner", "vertices", "weights", "points", "normals"]:
         np.testing.assert_array_equal(getattr(a, column), getattr(b, column))

@@ -6,7 +6,7 @@ use nearmiss::mesh::{Body, Positions};
 use nearmiss::query::{Query, QueryKind};
 use nearmiss::research::{BoundingVolume, BroadPhase, QueryExt};
 use nearmiss::scene::{BodyId, CollisionFilter, DeviceMotion, DeviceRows, Motion, Number, Scene};
-use nearmiss::{Contacts, Device};
+use nearmiss::{Contacts, Detector, Device, MultiDetector};
 use nearmiss_lab::scene::{self, Bodies};
 use nearmiss_lab::{OneQuery, OneQueryOnSeveral};
 use support::{ORDERS, asked, cases, engine, sanitizer};
@@ -104,6 +104,26 @@ fn bodies_that_move_are_divided_anew_and_found_alike() {
             );
         }
     }
+}
+
+#[test]
+fn rows_by_feature_are_those_of_one_device() {
+    use nearmiss::contacts::GroupBy;
+    let soup = scene::soup(200, 3, false).expect("a soup");
+    let mut one = Detector::new(engine(), soup.clone()).expect("a detector");
+    let mut several = MultiDetector::new(vec![engine(), engine()], soup).expect("detectors");
+    let id = one.scene().ids().next().expect("a body");
+    let near = nearmiss::Near::within(0.1);
+    let [a, b] = [one.query(&near), several.query(&near)].map(|answer| answer.expect("an answer"));
+    assert!(a.len() > 10 && a.rows == b.rows);
+    for by in GroupBy::ALL {
+        let found = several.grouped(&b, id, by).expect("groups");
+        assert!(found == one.grouped(&a, id, by).expect("groups") && !found.is_empty(), "{by:?}");
+    }
+    let least = several.least_by_vertex(&b, id).expect("distances");
+    assert_eq!(least, one.least_by_vertex(&a, id).expect("distances"));
+    let pairs = several.query(&nearmiss::Discrete::default()).expect("pairs");
+    assert!(several.least_by_vertex(&pairs, id).is_err());
 }
 
 #[test]

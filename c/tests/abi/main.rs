@@ -6,6 +6,7 @@ mod bodies;
 mod elements;
 mod exclusions;
 mod first;
+mod grouped;
 mod interrupted;
 mod left_out;
 mod one_detector;

@@ -1412,6 +1412,17 @@ class MultiDetector:
     def geometry(self, answer: TrianglePairs) -> PairGeometry:
         """Return where the features or triangles of an answer's rows meet: see Detector.geometry."""
 
+    def grouped(
+        self, answer: Answer, body: Key, by: str = "vertex"
+    ) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
+        """Group the rows of an answer by features of a body: see Detector.grouped."""
+
+    def least_by_vertex(self, answer: Answer, body: Key) -> NDArray[np.float64]:
+        """Return the least time of contact, or the least distance, of each vertex: see Detector.least_by_vertex."""
+
+    def curves(self, answer: TrianglePairs) -> Curves:
+        """Return the curves in which surfaces cross: see Detector.curves."""
+
     def first_contacts(self, first: FirstContact) -> Contacts:
         """Return the contacts at the time of an earliest answer: see Detector.first_contacts."""
 
