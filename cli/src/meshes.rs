@@ -44,16 +44,7 @@ impl Reader {
     /// # Errors
     /// Those of [`MeshFile::read`]; where this is strict, those of [`MeshFile::strict`].
     pub fn mesh(&mut self, path: &Path) -> Result<MeshFile, Error> {
-        let read = match path == Path::new("-") {
-            true => {
-                let bytes = self.stdin()?;
-                let format = Format::of_bytes(&bytes);
-                MeshFile::parse(STDIN, format, &bytes)
-                    .map_err(|e| self.all(e, |most| MeshFile::parse_problems(STDIN, format, &bytes, most)))
-            }
-            false => MeshFile::read(path).map_err(|e| self.all(e, |most| MeshFile::problems(path, most))),
-        };
-        read.and_then(|mesh| self.noted(mesh))
+        self.read(path, MeshFile::read, |format, bytes| MeshFile::parse(STDIN, format, bytes))
     }
 
     /// Another frame of a mesh.
@@ -61,12 +52,23 @@ impl Reader {
     /// # Errors
     /// Those of [`MeshFile::read_frame`]; where this is strict, those of [`MeshFile::strict`].
     pub fn frame(&mut self, of: &MeshFile, path: &Path) -> Result<MeshFile, Error> {
-        let read = match path == Path::new("-") {
-            true => {
-                let bytes = self.stdin()?;
-                of.parse_frame(STDIN, Format::of_bytes(&bytes), &bytes)
-            }
-            false => of.read_frame(path),
+        self.read(path, |path| of.read_frame(path), |format, bytes| of.parse_frame(STDIN, format, bytes))
+    }
+
+    /// A mesh from a file, or from standard input.
+    fn read(
+        &mut self,
+        path: &Path,
+        file: impl FnOnce(&Path) -> Result<MeshFile, Error>,
+        stdin: impl FnOnce(Format, &[u8]) -> Result<MeshFile, Error>,
+    ) -> Result<MeshFile, Error> {
+        let read = if path == Path::new("-") {
+            let bytes = self.stdin()?;
+            let format = Format::of_bytes(&bytes);
+            let list = |most| MeshFile::parse_problems(STDIN, format, &bytes, most);
+            stdin(format, &bytes).map_err(|e| self.all(e, list))
+        } else {
+            file(path).map_err(|e| self.all(e, |most| MeshFile::problems(path, most)))
         };
         read.and_then(|mesh| self.noted(mesh))
     }

@@ -21,8 +21,7 @@ pub struct Report {
     /// The step or frame of a sequence.
     #[serde(flatten)]
     pub moment: Option<Moment>,
-    /// Triangle pairs that share a point in the frame of a sequence, for queries at rest whose rows do
-    /// not show it.
+    /// Triangle pairs that share a point, for queries at rest whose rows do not show it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crossing: Option<u64>,
     /// Its figures.
@@ -30,14 +29,16 @@ pub struct Report {
     pub summary: Summary,
 }
 
-/// The face of the file from which each triangle was cut, body by body.
+/// The face of the file from which each triangle was cut, body by body. Edges and points of no face
+/// come behind all faces.
 pub struct FileFaces(Vec<Vec<u32>>);
 
 impl FileFaces {
     /// The faces of these bodies.
     pub fn of(bodies: &[Body], polygons: &[Polygons]) -> FileFaces {
         let all = |(body, polygons): (&Body, &Polygons)| {
-            (0..body.element_count() as u32).map(|i| polygons.file_face(i)).collect()
+            let all = 0..body.element_count() as u32;
+            all.map(|element| polygons.file_element(element, body.face_count())).collect()
         };
         FileFaces(bodies.iter().zip(polygons).map(all).collect())
     }

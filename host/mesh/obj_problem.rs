@@ -21,6 +21,10 @@ pub enum ObjProblem {
     )]
     ShortFace { line: usize, corners: usize },
     #[error(
+        "line {line}: an l with {corners} vertices; at least 2 are needed: remove it or give its vertices"
+    )]
+    ShortLine { line: usize, corners: usize },
+    #[error(
         "line {line}: the corner {found:?} is not of the form i, i/j, i//k or i/j/k with whole numbers: correct it"
     )]
     Corner { line: usize, found: String },
@@ -42,8 +46,8 @@ pub enum ObjProblem {
     #[error("line {line} begins with {found:?}, which is no keyword of OBJ: correct it or remove the line")]
     Word { line: usize, found: String },
     #[error(
-        "line {line} begins with {found:?}, which is not read; only vertices (v) and faces (f) are: give polygons, or \
-         remove the line"
+        "line {line} begins with {found:?}, which is not read; only v, f, l and p are: give polygons, or remove the \
+         line"
     )]
     Element { line: usize, found: String },
     #[error(
@@ -53,4 +57,26 @@ pub enum ObjProblem {
     Joined { line: usize, found: String },
     #[error("line {line} has a NUL byte; the file is not UTF-8 text: save it as UTF-8")]
     Nul { line: usize },
+}
+
+impl ObjProblem {
+    /// Line of the problem, from 1.
+    pub fn line(&self) -> usize {
+        match self {
+            ObjProblem::ShortVertex { line, .. }
+            | ObjProblem::LongVertex { line, .. }
+            | ObjProblem::Number { line, .. }
+            | ObjProblem::ShortFace { line, .. }
+            | ObjProblem::ShortLine { line, .. }
+            | ObjProblem::Corner { line, .. }
+            | ObjProblem::Zero { line }
+            | ObjProblem::Back { line, .. }
+            | ObjProblem::Index { line, .. }
+            | ObjProblem::Misspelt { line, .. }
+            | ObjProblem::Word { line, .. }
+            | ObjProblem::Element { line, .. }
+            | ObjProblem::Joined { line, .. }
+            | ObjProblem::Nul { line } => *line,
+        }
+    }
 }

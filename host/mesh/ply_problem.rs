@@ -78,8 +78,8 @@ pub enum PlyProblem {
     #[error("face {face} has {corners} corners; at least 3 are needed: remove the face or give its corners")]
     Corners { face: u64, corners: u64 },
     #[error(
-        "its element {element}, of {count} entries, is not read; only vertex and face are: convert it into faces, or \
-         remove it"
+        "its element {element}, of {count} entries, is not read; only vertex, face, tristrips and edge (vertex1, \
+         vertex2) are: convert it, or remove it"
     )]
     Unread { element: String, count: u64 },
     #[error("face {face} corner {corner} names vertex {index}; an index must be 0 or more: correct it")]
@@ -89,6 +89,11 @@ pub enum PlyProblem {
          the index or remove the face"
     )]
     Index { face: u64, corner: u64, index: i64, vertices: u64 },
+    #[error(
+        "edge {edge} names vertex {index}, but there are {vertices} vertices, counted from 0: correct the index or \
+         remove the edge"
+    )]
+    End { edge: u64, index: i64, vertices: u64 },
     #[error("has {bytes} bytes after its last element: correct the counts in the header or remove the bytes")]
     Trailing { bytes: usize },
     #[error("has {found:?} after its last element: correct the counts in the header or remove the text")]

@@ -25,6 +25,7 @@ mod cut;
 pub mod file;
 mod format;
 mod gltf;
+mod loose;
 mod mesh_file;
 mod note;
 mod obj;

@@ -2,6 +2,7 @@
 
 use crate::file::{self, encoding};
 use crate::format::Format;
+use crate::loose::Loose;
 use crate::note::{Note, Notes, Treated};
 use crate::polygons::{Fans, Polygons};
 use crate::problems::{Problems, wrong};
@@ -31,6 +32,10 @@ impl MeshFile {
     /// whose projection crosses itself. Corners may touch; a hole may be joined by an edge there
     /// and back.
     ///
+    /// Lines and points are [edges](Mesh::edges) and [points](Mesh::points) of the mesh: `l` and `p`
+    /// of OBJ, the element `edge` of PLY, faces of two corners and one of OFF, and those modes of
+    /// glTF.
+    ///
     /// A flat polygon that crosses itself is cut as a fan too. The fan covers all that the polygon
     /// winds around, and may cover more. A face of fewer than three corners is left out.
     /// [`MeshFile::notes`] counts both, and all other parts that were not read;
@@ -43,7 +48,7 @@ impl MeshFile {
     /// # Errors
     /// [`Error::Input`], with the file, the element and the value, for:
     /// - a file that cannot be read or is not regular, an unknown extension, a malformed file;
-    /// - a mesh that fails [`Mesh::new`], or has no triangles;
+    /// - a mesh that fails [`Mesh::new`], or has no triangles, edges and points;
     /// - a polygon of more than 131,072 corners whose fan is wrong ([`Problem::FaceCorners`]).
     ///
     /// [`Error::OutOfMemory`] for a file that is too large for the memory.
@@ -89,11 +94,9 @@ impl MeshFile {
             }
         };
         let mut found = problems.found;
-        let Parsed { mut positions, fans, .. } = parsed;
+        let Parsed { mut positions, fans, loose, .. } = parsed;
         while found.len() < most {
-            let mesh = Mesh::new(name.clone(), positions.clone(), fans.faces.clone());
-            let made = mesh.and_then(|mesh| mesh.require_elements().map(|()| mesh));
-            match made {
+            match made(name.clone(), positions.clone(), fans.faces.clone(), loose.clone()) {
                 Ok(_) if !found.is_empty() => break,
                 Ok(_) => match MeshFile::parse_by((name, format, bytes), others) {
                     Err(Error::Input { problem, .. }) => return Ok(vec![problem]),
@@ -153,12 +156,13 @@ impl MeshFile {
             return Ok(file);
         }
         let MeshFile { mesh, mut polygons, mut notes } = file;
+        let loose = Loose::of(&mesh);
         let (name, positions, mut faces) = mesh.into_parts();
         match cut::cut(&positions, &mut faces, &mut polygons) {
             Ok(of_cut) => notes.extend(of_cut.of(&name)),
             Err(problem) => return Err(Error::Input { file: name, problem }),
         }
-        Ok(MeshFile { mesh: Mesh::new(name, positions, faces)?, polygons, notes })
+        Ok(MeshFile { mesh: loose.set(Mesh::new(name, positions, faces)?)?, polygons, notes })
     }
 
     /// Reads another frame of this mesh from the bytes of a file. Otherwise as
@@ -182,16 +186,18 @@ impl MeshFile {
     /// fan: this frame is cut as the first.
     ///
     /// # Errors
-    /// [`Error::Input`] with [`Problem::FrameVertices`], [`Problem::FrameFaces`] or
-    /// [`Problem::FrameFace`]: the first face of the file that differs.
+    /// [`Error::Input`] with [`Problem::FrameVertices`], [`Problem::FrameFaces`],
+    /// [`Problem::FrameFace`] (the first face of the file that differs) or
+    /// [`Problem::FrameElements`].
     pub fn cut_as(self, first: &MeshFile) -> Result<MeshFile, Error> {
         if let Some(problem) = difference(first, &self) {
             return Err(Error::Input { file: self.mesh.name().to_owned(), problem });
         }
         let MeshFile { mut mesh, mut notes, .. } = self;
         if mesh.faces() != first.mesh.faces() {
+            let loose = Loose::of(&mesh);
             let (name, positions, _) = mesh.into_parts();
-            mesh = Mesh::new(name, positions, first.mesh.faces().to_vec())?;
+            mesh = loose.set(Mesh::new(name, positions, first.mesh.faces().to_vec())?)?;
         }
         notes.retain(|note| {
             note.treated != Treated::Fan && !first.notes.iter().any(|known| known.is_as(note))
@@ -253,6 +259,7 @@ impl MeshFile {
 pub(crate) struct Parsed {
     pub positions: Positions,
     pub fans: Fans,
+    pub loose: Loose,
     pub notes: Notes,
 }
 
@@ -283,14 +290,19 @@ fn fans(
     others: gltf::Others<'_>,
     problems: &mut Problems,
 ) -> Result<MeshFile, Error> {
-    let Parsed { positions, fans, notes } = match parsed(&name, (format, bytes), others, problems)? {
+    let Parsed { positions, fans, loose, notes } = match parsed(&name, (format, bytes), others, problems)? {
         Ok(parsed) => parsed,
         Err(problem) => return Err(Error::Input { file: name, problem }),
     };
-    let mesh = Mesh::new(name, positions, fans.faces)?;
-    mesh.require_elements()?;
+    let mesh = made(name, positions, fans.faces, loose)?;
     let notes = notes.of(mesh.name());
     Ok(MeshFile { mesh, polygons: fans.polygons, notes })
+}
+
+/// The mesh of a file; it has a face, an edge or a point.
+fn made(name: String, positions: Positions, faces: Vec<[u32; 3]>, loose: Loose) -> Result<Mesh, Error> {
+    let mesh = loose.set(Mesh::new(name, positions, faces)?)?;
+    mesh.require_elements().map(|()| mesh)
 }
 
 /// Files that a file names, from its folder.
@@ -319,8 +331,13 @@ fn difference(t0: &MeshFile, t1: &MeshFile) -> Option<Problem> {
     if count_t0 != count_t1 {
         return Some(Problem::FrameVertices { first: first(), t0: count_t0, t1: count_t1 });
     }
+    let differ = |what, is_other: bool| is_other.then(|| Problem::FrameElements { first: first(), what });
+    let loose = || {
+        let edges = differ("edges", t0.mesh.edges() != t1.mesh.edges());
+        edges.or_else(|| differ("points", t0.mesh.points() != t1.mesh.points()))
+    };
     if t0.mesh.faces() == t1.mesh.faces() {
-        return None;
+        return loose();
     }
     let [count_t0, count_t1] = [t0, t1].map(MeshFile::file_face_count);
     if count_t0 != count_t1 {
@@ -331,7 +348,8 @@ fn difference(t0: &MeshFile, t1: &MeshFile) -> Option<Problem> {
         t0.polygons.corners(face, t0.mesh.faces(), &mut corners_t0);
         t1.polygons.corners(face, t1.mesh.faces(), &mut corners_t1);
         corners_t0 != corners_t1
-    })?;
+    });
+    let Some(face) = face else { return loose() };
     Some(Problem::FrameFace { first: first(), face, t0: corners_t0, t1: corners_t1 })
 }
 

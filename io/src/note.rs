@@ -1,6 +1,6 @@
 //! Notes of a reader: parts of a file that the mesh has differently.
 
-use nearmiss::mesh::Problem;
+use nearmiss::mesh::{ObjProblem, Problem};
 use nearmiss::words::counted;
 use std::fmt;
 
@@ -28,10 +28,11 @@ pub enum Treated {
     /// point that the face winds around, and has all its edges. So no contact is missed, and there
     /// may be more at points that only the fan covers.
     Fan,
-    /// A face of fewer than three corners was left out; later faces keep their numbers.
+    /// A face of fewer than three corners was left out; later faces keep their numbers. So was a line
+    /// of one vertex.
     LeftOut,
-    /// Geometry that is no polygon was not read: points, lines, curves and surfaces of OBJ,
-    /// elements of PLY.
+    /// Geometry of other kinds was not read: curves and surfaces of OBJ, elements of PLY, strips of
+    /// fewer vertices than a triangle has, further scenes of glTF.
     NotRead,
     /// Corners with equal coordinates became one vertex: the format has no shared vertices. It is how
     /// such a file is read, and [`MeshFile::strict`](crate::MeshFile::strict) allows it.
@@ -54,6 +55,9 @@ impl fmt::Display for Note {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Note { file, treated, count, first } = self;
         let (one, many) = match (treated, first) {
+            (Treated::LeftOut, Problem::Obj(first)) if matches!(**first, ObjProblem::ShortLine { .. }) => {
+                ("part", "parts")
+            }
             (Treated::Fan | Treated::LeftOut, _) => ("face", "faces"),
             (_, Problem::Ply(_)) => ("entry", "entries"),
             (Treated::NotRead, Problem::Scene { .. }) => ("part", "parts"),

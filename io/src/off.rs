@@ -2,6 +2,7 @@
 //!
 //! This is our own reader. The crate `off-rs` reads floats alone and no header but `OFF`.
 
+use crate::loose::Loose;
 use crate::mesh_file::Parsed;
 use crate::note::{Notes, Treated};
 use crate::polygons::Fans;
@@ -11,7 +12,7 @@ use crate::welded::positions;
 use nearmiss::mesh::{MAX_FACES, MAX_VERTICES, Problem};
 
 /// Reads the whole file. Colours, normals and texture coordinates are skipped. A face of two corners is
-/// a segment, and one of one corner a point.
+/// an edge, and one of one corner a point.
 pub(crate) fn read(bytes: &[u8], problems: &mut Problems) -> Result<Parsed, Problem> {
     let mut lines = Lines { rest: bytes, line: 0 };
     let [vertices, faces] = counts(&mut lines)?;
@@ -23,17 +24,18 @@ pub(crate) fn read(bytes: &[u8], problems: &mut Problems) -> Result<Parsed, Prob
             Err(problem) => problems.add(problem).map(|()| [0.0; 3])?,
         });
     }
-    let (mut fans, mut notes) = (Fans::default(), Notes::default());
+    let (mut fans, mut loose, mut notes) = (Fans::default(), Loose::default(), Notes::default());
     for face in 0..faces {
         let (line, text) = lines.next().ok_or_else(|| cut("faces", faces, face))?;
-        polygon((line, text), vertices, (&mut fans, &mut notes)).or_else(|problem| problems.add(problem))?;
+        polygon((line, text), vertices, (&mut fans, &mut loose, &mut notes))
+            .or_else(|problem| problems.add(problem))?;
     }
     match lines.next() {
         Some((line, text)) => Err(wrong(
             format!("line {line}: {:?} is after the last face", shown(text)),
             "correct the counts of the header, or remove it",
         )),
-        None => Ok(Parsed { positions: positions(points), fans, notes }),
+        None => Ok(Parsed { positions: positions(points), fans, loose, notes }),
     }
 }
 
@@ -130,7 +132,7 @@ fn point(line: usize, text: &[u8]) -> Result<[f64; 3], Problem> {
 fn polygon(
     (line, text): (usize, &[u8]),
     vertices: u64,
-    (fans, notes): (&mut Fans, &mut Notes),
+    (fans, loose, notes): (&mut Fans, &mut Loose, &mut Notes),
 ) -> Result<(), Problem> {
     let mut all = words(text);
     let first = all.next().unwrap_or_default();
@@ -159,8 +161,14 @@ fn polygon(
                 wrong(format!("line {line}: the face has no corners"), "remove it")
             });
         }
-        [a] => fans.single([a, a, a]),
-        [a, b] => fans.single([a, b, b]),
+        [a] => {
+            fans.leave_out(0);
+            loose.point(a);
+        }
+        [a, b] => {
+            fans.leave_out(0);
+            loose.segment([a, b]);
+        }
         _ => corners.iter().enumerate().for_each(|(at, vertex)| fans.corner(at as u64, *vertex)),
     }
     Ok(())

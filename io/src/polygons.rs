@@ -17,8 +17,9 @@ pub struct Polygons {
 }
 
 impl Polygons {
-    /// Number of faces from which `triangles` were made.
-    pub(crate) fn count(&self, triangles: usize) -> usize {
+    /// Number of faces of the file, those that were left out too, from which so many triangles were
+    /// made.
+    pub fn count(&self, triangles: usize) -> usize {
         if self.first.is_empty() { triangles } else { self.first.len() }
     }
 
@@ -28,6 +29,15 @@ impl Polygons {
         match self.first.partition_point(|&first| first <= triangle) {
             0 => triangle,
             after => after as u32 - 1,
+        }
+    }
+
+    /// The number in the file of an element of a mesh with so many triangles: the face of a triangle.
+    /// Edges and points of no face come behind all faces of the file.
+    pub fn file_element(&self, element: u32, triangles: usize) -> u32 {
+        match (element as usize).checked_sub(triangles) {
+            None => self.file_face(element),
+            Some(behind) => (self.count(triangles) + behind) as u32,
         }
     }
 
@@ -101,7 +111,7 @@ impl Fans {
         self.last = vertex;
     }
 
-    /// Adds a face of one triangle, a segment `[a, b, b]` or a point `[p, p, p]`.
+    /// Adds a face of one triangle.
     pub fn single(&mut self, face: [u32; 3]) {
         face.into_iter().enumerate().for_each(|(corner, vertex)| self.corner(corner as u64, vertex));
     }

@@ -14,6 +14,17 @@ impl Problems {
         Problems { found: Vec::new(), most: most.max(1) }
     }
 
+    /// Sorts those of lines, if all have one.
+    pub fn sort_by_line(&mut self) {
+        let line = |problem: &Problem| match problem {
+            Problem::Obj(problem) => Some(problem.line()),
+            _ => None,
+        };
+        if self.found.iter().all(|problem| line(problem).is_some()) {
+            self.found.sort_by_key(line);
+        }
+    }
+
     /// Takes a problem.
     ///
     /// # Errors

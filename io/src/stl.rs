@@ -3,6 +3,7 @@
 //! This is our own reader. The crate `stl_io` takes a binary file that begins with `solid` for text,
 //! rounds numbers of text to floats, and reads no solid but the first.
 
+use crate::loose::Loose;
 use crate::mesh_file::Parsed;
 use crate::note::{Notes, Treated};
 use crate::polygons::Fans;
@@ -50,7 +51,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Parsed, Problem> {
             wrong("an STL file has no shared vertices", "give a PLY or OBJ file to keep seams open")
         });
     }
-    Ok(Parsed { positions: positions(welded.points), fans, notes })
+    Ok(Parsed { positions: positions(welded.points), fans, loose: Loose::default(), notes })
 }
 
 /// Number of triangles by the header of a binary file.

@@ -3,39 +3,49 @@
 use crate::errors::{choice, raised, warn};
 use crate::watch::left_behind;
 use nearmiss::mesh::{MAX_FACES, MAX_VERTICES, Positions, Problem};
-use nearmiss::{Error, memory};
+use nearmiss::{Body, Error, memory};
 use nearmiss_io::MeshFile;
 use numpy::{
-    Element, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyReadonlyArray2, PyUntypedArray,
+    Element, PyArray1, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyReadonlyArray2, PyUntypedArray,
     PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 use std::path::PathBuf;
 
 /// Read a PLY, OBJ, STL, OFF or glTF file, also with .gz appended.
 ///
 /// - `path`: the file.
 /// - `strict`: raise InputError for each part of the file that would be skipped or cut otherwise.
+/// - `elements`: also return edges and points of no face.
 ///
 /// Returns (vertices, faces): (n, 3) float32 or float64 as in the file, and (m, 3) uint32. Polygons
-/// are cut into triangles. A MeshWarning counts parts that are skipped, left out (faces of one or two
-/// corners) or cut as a fan (faces that cross themselves).
+/// are cut into triangles. Lines and points of the file come behind them as faces [a, b, b] and
+/// [p, p, p]. With `elements`, returns (vertices, faces, edges, points) for Body: edges are (k, 2)
+/// uint32 and points (l,) uint32. A MeshWarning counts parts that are skipped, left out (faces of
+/// one or two corners) or cut as a fan (faces that cross themselves).
 ///
 /// Raises InputError for a file that is no mesh, with the line or element.
 #[pyfunction]
-#[pyo3(signature = (path, *, strict = false))]
+#[pyo3(signature = (path, *, strict = false, elements = false))]
 pub fn read_mesh<'py>(
     py: Python<'py>,
     path: PathBuf,
     strict: bool,
-) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyArray2<u32>>)> {
+    elements: bool,
+) -> PyResult<Bound<'py, PyTuple>> {
     let read = move || MeshFile::read(&path).and_then(|mesh| if strict { mesh.strict() } else { Ok(mesh) });
     let mesh = left_behind(py, read)?.map_err(raised)?;
     for note in mesh.notes() {
         warn(py, &note.to_string())?;
     }
     let mesh = mesh.into_mesh();
-    Ok((points(py, mesh.positions()), rows(py, mesh.faces())))
+    if elements {
+        let loose = (rows(py, mesh.edges()), PyArray1::from_slice(py, mesh.points()));
+        return (points(py, mesh.positions()), rows(py, mesh.faces()), loose.0, loose.1).into_pyobject(py);
+    }
+    let body = Body::deformable(mesh);
+    (points(py, body.positions_t0()), rows(py, body.elements())).into_pyobject(py)
 }
 
 /// Points in the precision that they have, copied.
@@ -51,7 +61,7 @@ pub fn rows<'py, T: Element + Copy + bytemuck::Pod, const N: usize>(
     py: Python<'py>,
     rows: &[[T; N]],
 ) -> Bound<'py, PyArray2<T>> {
-    let flat = numpy::PyArray1::from_slice(py, rows.as_flattened());
+    let flat = PyArray1::from_slice(py, rows.as_flattened());
     // So many numbers there are.
     #[allow(clippy::expect_used, reason = "rows times columns are all numbers")]
     flat.reshape([rows.len(), N]).expect("rows of equal length")

@@ -119,3 +119,16 @@ def test_a_body_is_pickled_with_its_lists():
     body = nm.Body([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [], edges=[[2, 0]], points=[1])
     copy = pickle.loads(pickle.dumps(body))
     assert copy.edges.tolist() == [[2, 0]] and copy.points.tolist() == [1] and copy.face_count == 0
+
+
+def test_lines_and_points_of_files_are_edges_and_points(tmp_path):
+    path = tmp_path / "hair.obj"
+    path.write_text("v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 0.5\nv 1 1 3\nv 1 1.2 2\nf 1 2 3\nl 4 5\np 6\n")
+    vertices, faces, edges, points = nm.read_mesh(path, elements=True)
+    assert (faces.tolist(), edges.tolist(), points.tolist()) == ([[0, 1, 2]], [[3, 4]], [5])
+    near = nm.Detector(nm.Body(vertices, faces, edges=edges, points=points), device=CPU).near(0.5)
+    assert near.kind.tolist() == [nm.Kind.VERTEX_FACE, nm.Kind.EDGE_VERTEX]
+    # Two arrays have the same elements as faces, so that nothing is lost.
+    vertices, faces = nm.read_mesh(path)
+    assert faces.tolist() == [[0, 1, 2], [4, 3, 3], [5, 5, 5]]
+    assert len(nm.Detector(nm.Body(vertices, faces), device=CPU).near(0.5)) >= 2

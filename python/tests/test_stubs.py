@@ -175,7 +175,9 @@ def literals(node):
         for part in ast.walk(arg.annotation) if arg.annotation else []:
             if isinstance(part, ast.Subscript) and getattr(part.value, "id", None) == "Literal":
                 elements = part.slice.elts if isinstance(part.slice, ast.Tuple) else [part.slice]
-                yield arg.arg, {element.value for element in elements}
+                names = {element.value for element in elements if isinstance(element.value, str)}
+                if names:
+                    yield arg.arg, names
 
 
 def listed(call):

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 import nearmiss as nm
 
 vertices, faces = nm.read_mesh("mesh.ply")
+hair, skin, edges, points = nm.read_mesh("hair.obj", elements=True)
 pairs: NDArray[np.uint32] = nm.self_intersections(vertices, faces)
 toi: float | None = nm.time_of_impact(vertices, vertices, faces)
 near: nm.NearPairs = nm.near(vertices, faces, 0.1)

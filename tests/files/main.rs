@@ -6,6 +6,8 @@
 mod bad_input;
 mod formats;
 mod fuzz_readers;
+mod gltf;
+mod loose;
 mod mesh;
 mod notes;
 mod polygons;

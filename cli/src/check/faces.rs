@@ -19,7 +19,7 @@ pub struct Edge {
 pub struct Faults {
     /// Triangles that have the vertices of an earlier one, in any order, and that one.
     pub duplicate: Vec<[u32; 2]>,
-    /// Triangles of three vertices whose area is 0, exactly.
+    /// Triangles whose area is 0, exactly; also those that repeat a vertex.
     pub degenerate: Vec<u32>,
     /// Edges of one triangle.
     pub boundary: Vec<Edge>,
@@ -27,9 +27,9 @@ pub struct Faults {
     pub non_manifold: Vec<Edge>,
     /// Triangles with an edge of more than two.
     pub at_non_manifold: Vec<u32>,
-    /// Faces `[a, b, b]`.
+    /// Edges of no face.
     pub segments: usize,
-    /// Faces `[p, p, p]`.
+    /// Points of no face and no edge.
     pub points: usize,
 }
 
@@ -38,15 +38,17 @@ pub fn faults(body: &Body) -> Faults {
     let mut found = Faults::default();
     let mut known: HashMap<[u32; 3], u32> = HashMap::new();
     let mut edges: Vec<([u32; 2], u32)> = Vec::new();
+    for [a, b, _] in &body.elements()[body.face_count()..] {
+        *if a == b { &mut found.points } else { &mut found.segments } += 1;
+    }
     for (at, face) in body.faces().iter().enumerate() {
         let at = at as u32;
         let mut sorted = *face;
         sorted.sort_unstable();
         let [a, b, c] = sorted;
-        if a == c {
-            found.points += 1;
-        } else if a == b || b == c {
-            found.segments += 1;
+        // By the set of vertices: of two, the smaller comes twice.
+        if b == c {
+            sorted = [a, a, c];
         }
         if let Some(first) = known.get(&sorted) {
             found.duplicate.push([*first, at]);
@@ -54,6 +56,7 @@ pub fn faults(body: &Body) -> Faults {
             known.insert(sorted, at);
         }
         if a == b || b == c {
+            found.degenerate.push(at);
             continue;
         }
         let corners = face.map(|v| Vec3(body.positions_t0().get_f64(v as usize).unwrap_or_default()));

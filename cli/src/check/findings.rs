@@ -14,7 +14,7 @@ pub struct Findings {
     pub bodies: Vec<Body>,
     /// The number of faces in each file.
     pub face_counts: Vec<usize>,
-    /// Triangles to faces of the files.
+    /// Elements of the bodies to those of the files.
     pub faces: Vec<Vec<u32>>,
     /// Pairs of faces that meet; those of faces that are there twice are not among them.
     pub pairs: Vec<Pair>,
@@ -31,10 +31,12 @@ impl Findings {
         (geometry, groups): (&[PairGeometry], &[Option<u32>]),
     ) -> Findings {
         let of = |(body, polygons): (&Body, &Polygons)| -> Vec<u32> {
-            (0..body.face_count() as u32).map(|triangle| polygons.file_face(triangle)).collect()
+            let all = 0..body.element_count() as u32;
+            all.map(|element| polygons.file_element(element, body.face_count())).collect()
         };
         let faces: Vec<Vec<u32>> = bodies.iter().zip(polygons).map(of).collect();
-        let face_counts = faces.iter().map(|all| all.last().map_or(0, |last| *last as usize + 1)).collect();
+        let face_counts =
+            bodies.iter().zip(polygons).map(|(body, polygons)| polygons.count(body.face_count())).collect();
         let faults: Vec<Faults> = bodies.iter().map(faults).collect();
         let twice: HashSet<[Face; 2]> = faults
             .iter()
@@ -42,9 +44,9 @@ impl Findings {
             .flat_map(|(mesh, own)| own.duplicate.iter().map(move |pair| (mesh, pair)))
             .map(|(mesh, pair)| pair.map(|at| Face { mesh, face: faces[mesh][at as usize] }))
             .collect();
-        let mut pairs = pairs(geometry, polygons);
+        let mut pairs = pairs(geometry, &faces);
         pairs.retain(|pair| !twice.contains(&pair.faces));
-        let clusters = clusters(geometry, groups, polygons);
+        let clusters = clusters(geometry, groups, &faces);
         Findings { bodies, face_counts, faces, pairs, clusters, faults }
     }
 

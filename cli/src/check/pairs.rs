@@ -1,11 +1,10 @@
 //! Pairs of faces that meet, and clusters of those that cross.
 
 use nearmiss::contacts::{PairGeometry, PairKind};
-use nearmiss_io::Polygons;
 use serde::Serialize;
 use std::collections::{BTreeMap, HashSet};
 
-/// A face of a file.
+/// A face of a file. Edges of no face come behind all faces, then points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Face {
     pub mesh: usize,
@@ -41,11 +40,11 @@ fn rank(kind: PairKind) -> u8 {
     }
 }
 
-/// The faces of a pair of triangles, ascending.
-fn faces(pair: &PairGeometry, polygons: &[Polygons]) -> [Face; 2] {
+/// The faces of a pair of triangles, ascending, by those of each mesh.
+fn faces(pair: &PairGeometry, of: &[Vec<u32>]) -> [Face; 2] {
     let face = |side: usize| {
         let mesh = pair.bodies[side].index();
-        Face { mesh, face: polygons[mesh].file_face(pair.triangles[side]) }
+        Face { mesh, face: of[mesh][pair.triangles[side] as usize] }
     };
     let mut faces = [face(0), face(1)];
     faces.sort_unstable();
@@ -53,16 +52,16 @@ fn faces(pair: &PairGeometry, polygons: &[Polygons]) -> [Face; 2] {
 }
 
 /// All pairs of faces that meet, each once, ascending.
-pub fn pairs(geometry: &[PairGeometry], polygons: &[Polygons]) -> Vec<Pair> {
-    let of = |pair: &PairGeometry| Pair { kind: pair.kind, faces: faces(pair, polygons) };
-    let mut all: Vec<Pair> = geometry.iter().map(of).collect();
+pub fn pairs(geometry: &[PairGeometry], of: &[Vec<u32>]) -> Vec<Pair> {
+    let named = |pair: &PairGeometry| Pair { kind: pair.kind, faces: faces(pair, of) };
+    let mut all: Vec<Pair> = geometry.iter().map(named).collect();
     all.sort_unstable_by_key(|pair| (pair.faces, rank(pair.kind)));
     all.dedup_by_key(|pair| pair.faces);
     all
 }
 
 /// The clusters of faces that cross, the largest first.
-pub fn clusters(geometry: &[PairGeometry], groups: &[Option<u32>], polygons: &[Polygons]) -> Vec<Cluster> {
+pub fn clusters(geometry: &[PairGeometry], groups: &[Option<u32>], of: &[Vec<u32>]) -> Vec<Cluster> {
     let mut all: BTreeMap<u32, Vec<&PairGeometry>> = BTreeMap::new();
     for (pair, group) in geometry.iter().zip(groups) {
         if let Some(group) = group {
@@ -70,11 +69,11 @@ pub fn clusters(geometry: &[PairGeometry], groups: &[Option<u32>], polygons: &[P
         }
     }
     let cluster = |rows: Vec<&PairGeometry>| {
-        let pairs: HashSet<[Face; 2]> = rows.iter().map(|pair| faces(pair, polygons)).collect();
+        let pairs: HashSet<[Face; 2]> = rows.iter().map(|pair| faces(pair, of)).collect();
         let faces: HashSet<Face> = pairs.iter().flatten().copied().collect();
         let points = || rows.iter().filter_map(|pair| pair.ends).flatten();
-        let bound = |from: f64, of: fn(f64, f64) -> f64| {
-            points().fold([from; 3], |box_, point| [0, 1, 2].map(|k| of(box_[k], point[k])))
+        let bound = |from: f64, pick: fn(f64, f64) -> f64| {
+            points().fold([from; 3], |box_, point| [0, 1, 2].map(|k| pick(box_[k], point[k])))
         };
         let (low, high) = (bound(f64::INFINITY, f64::min), bound(f64::NEG_INFINITY, f64::max));
         Cluster { pairs: pairs.len(), faces: faces.len(), low, high }

@@ -110,11 +110,42 @@ fn meshes_are_checked_against_each_other_or_alone() {
     );
     assert!(out(&run(&["check", &good, &wall])).contains("1 pair: 0:0 and 1:0"));
     assert_eq!(checked(&[&good, &wall, "--each"]).0, 0);
-    // Rods and points are bodies too.
-    let rod = folder.write("rod.obj", "v 1 1 -1\nv 1 1 1\nv 9 9 9\nf 1 2 2\nf 3 3 3\n");
-    let (status, told) = checked(&[&good, &rod]);
-    assert_eq!((status, told["segments"].as_u64(), told["points"].as_u64()), (1, Some(1), Some(1)));
-    assert_eq!(counts(&told), [("boundary_edges", 4), ("clusters", 1), ("crossing", 1)]);
+    // Rods and points are bodies too, with numbers behind those of faces.
+    let alone = "v 1 1 -1\nv 1 1 1\nv 9 9 9\np 3\nl 2 1\n";
+    let behind = "v 1 1 -1\nv 1 1 1\nv 9 9 9\nv 5 5 5\nv 5 6 5\nv 5 5 6\nf 4 5 6\np 3\nl 2 1\n";
+    for (name, text, at) in [("alone.obj", alone, 0), ("behind.obj", behind, 1)] {
+        let rod = folder.write(name, text);
+        let (status, told) = checked(&[&good, &rod]);
+        assert_eq!((status, told["segments"].as_u64(), told["points"].as_u64()), (1, Some(1), Some(1)));
+        assert_eq!(told["crossing"]["count"].as_u64(), Some(1), "{told}");
+        assert_eq!(told["crossing"]["first"][0]["faces"], serde_json::json!([0, at]), "{told}");
+        let painted = folder.path("painted.ply");
+        assert_eq!(run(&["check", &good, &rod, "--out-mesh", &painted]).status.code(), Some(1));
+    }
+}
+
+#[test]
+fn a_face_that_repeats_a_vertex_is_degenerate() {
+    let folder = Folder::new("check-repeats");
+    let vertices = "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 9 9 9\nv 9 9 9\nv 8 9 9\n";
+    let told = |faces: &str, more: &[&str]| {
+        let mesh = folder.write("a.obj", &format!("{vertices}{faces}"));
+        let (status, told) = checked(&[&[mesh.as_str()], more].concat());
+        let of = |key: &str| told[key]["count"].as_u64().expect("a count");
+        (status, of("degenerate"), of("duplicate"), told["segments"].as_u64().expect("a count"))
+    };
+    assert_eq!(told("f 1 2 3\n", &[]), (0, 0, 0, 0));
+    assert_eq!(told("f 1 2 3\nf 4 6 6\n", &[]), (1, 1, 0, 0));
+    assert_eq!(told("f 1 2 3\nf 4 4 4\n", &[]), (1, 1, 0, 0));
+    // The same vertices in any order and number.
+    assert_eq!(told("f 1 2 3\nf 4 6 6\nf 6 4 4\n", &[]), (1, 2, 1, 0));
+    // A corner that is welded away makes no thread.
+    for more in [&[][..], &["--weld"]] {
+        assert_eq!(told("f 1 2 3\nf 4 5 6\n", more), (1, 1, 0, 0), "{more:?}");
+    }
+    // A short face counts as a face of the file, wherever it is.
+    let mesh = folder.write("short.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\nf 1 2\n");
+    assert_eq!(checked(&[&mesh]).1["meshes"][0]["faces"], 2);
 }
 
 #[test]

@@ -120,6 +120,18 @@ fn all_problems_of_a_file_are_listed() {
     assert_eq!(lines(&["detect"]), all[..1]);
     assert_eq!(lines(&["detect", "--problems", "2"]), all[..2]);
     assert_eq!(lines(&["check"]), all);
+    // Vertices that are not there, in the order of lines.
+    let far =
+        folder.write("far.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\nf 1 2 8\nf 1 x 3\nf 7 2 3\nl 1 6\n");
+    let text = refused(3, &["detect", &far, "--problems", "20"]);
+    let places: Vec<bool> =
+        text.lines().zip([4, 5, 6, 7, 8]).map(|(text, at)| text.contains(&format!("line {at}:"))).collect();
+    assert_eq!((places, text.lines().count()), (vec![true; 5], 5), "{text}");
+    assert!(refused(3, &["detect", &far]).contains("line 6:"));
+    // Another frame of a good mesh, too.
+    let good = folder.write("good.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let frame = refused(3, &["detect", &good, &bad, "--problems", "20"]);
+    assert_eq!(frame.lines().collect::<Vec<_>>(), all);
     let done = fed(&["detect", "-", "--problems", "9"], std::fs::read(&bad).expect("a file").as_slice());
     let said = err(&done).replace("standard input", &bad);
     assert_eq!(said.lines().collect::<Vec<_>>(), all);

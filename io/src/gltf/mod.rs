@@ -5,6 +5,7 @@
 
 mod data;
 
+use crate::loose::Loose;
 use crate::mesh_file::Parsed;
 use crate::note::{Notes, Treated};
 use crate::polygons::Fans;
@@ -16,12 +17,16 @@ use ::gltf::{Document, Gltf, Node, Primitive, Semantic};
 use data::Data;
 use nearmiss::mesh::Problem;
 use nearmiss::{Error, memory};
+use std::collections::HashSet;
 
 /// Most bytes of memory that a byte of the JSON takes: empty nodes take most.
 const OF_JSON: u64 = 512;
 
 /// Most bytes of memory that a corner takes while it is welded.
 const OF_A_CORNER: u64 = 200;
+
+/// The extension by which a node has more meshes than are read.
+const INSTANCES: &str = "EXT_mesh_gpu_instancing";
 
 /// Other files that a file names, by their path from it.
 pub(crate) type Others<'a> = &'a dyn Fn(&str) -> Result<Vec<u8>, Problem>;
@@ -54,16 +59,38 @@ pub(crate) fn read(bytes: &[u8], others: Others<'_>) -> Result<Parsed, Problem> 
         }
     }
     let file = checked(bytes)?;
+    let mut notes = Notes::default();
+    if file.extensions_used().any(|name| name == INSTANCES) {
+        notes
+            .add(Treated::NotRead, || wrong(format!("{INSTANCES} is not supported"), "export each instance"));
+    }
     let mut all = Reader {
         data: Data::new(&file, others),
         welded: Welded::default(),
         fans: Fans::default(),
-        notes: Notes::default(),
+        loose: Loose::default(),
+        notes,
         moved: 0,
+        other_scenes: 0,
     };
     match file.default_scene().or_else(|| file.scenes().next()) {
-        Some(scene) => all.nodes(scene.nodes().collect(), file.nodes().len())?,
+        Some(scene) => {
+            let others = file.scenes().filter(|other| other.index() != scene.index());
+            all.other_scenes = others.filter(|other| other.nodes().len() > 0).count() as u64;
+            all.nodes(scene.nodes().collect(), file.nodes().len())?;
+        }
+        // A file without scenes has trees of nodes all the same, or meshes alone.
+        None if file.nodes().len() > 0 => {
+            let below: HashSet<usize> =
+                file.nodes().flat_map(|node| node.children()).map(|node| node.index()).collect();
+            let roots = file.nodes().filter(|node| !below.contains(&node.index()));
+            let visited = all.nodes(roots.collect(), file.nodes().len())?;
+            if visited < file.nodes().len() {
+                return Err(wrong("has nodes that are below themselves", "give each node one parent"));
+            }
+        }
         None => file.meshes().try_for_each(|mesh| {
+            all.welded.part();
             mesh.primitives().try_for_each(|primitive| all.primitive(&primitive, None, mesh.index()))
         })?,
     }
@@ -91,14 +118,18 @@ struct Reader<'a> {
     data: Data<'a>,
     welded: Welded,
     fans: Fans,
+    loose: Loose,
     notes: Notes,
     /// Meshes that a bone or a morph target moves.
     moved: u64,
+    /// Scenes besides the one that is read.
+    other_scenes: u64,
 }
 
 impl Reader<'_> {
-    /// All meshes of a scene. A node has one parent at most, so each is visited once.
-    fn nodes(&mut self, roots: Vec<Node<'_>>, count: usize) -> Result<(), Problem> {
+    /// All meshes of a scene; returns the number of its nodes. A node has one parent at most, so each
+    /// is visited once.
+    fn nodes(&mut self, roots: Vec<Node<'_>>, count: usize) -> Result<usize, Problem> {
         let mut visited = vec![false; count];
         let mut next: Vec<(Node, Placed)> = roots.into_iter().rev().map(|node| (node, None)).collect();
         while let Some((node, parent)) = next.pop() {
@@ -119,7 +150,7 @@ impl Reader<'_> {
             let children: Vec<Node> = node.children().collect();
             next.extend(children.into_iter().rev().map(|node| (node, placed)));
         }
-        Ok(())
+        Ok(visited.into_iter().filter(|is_visited| *is_visited).count())
     }
 
     fn primitive(&mut self, primitive: &Primitive<'_>, placed: Placed, mesh: usize) -> Result<(), Problem> {
@@ -137,6 +168,20 @@ impl Reader<'_> {
         let bytes = (self.welded.corners + indices.len() as u64).saturating_mul(OF_A_CORNER);
         memory::require("the meshes of its nodes", bytes)
             .map_err(|e| wrong(format!("places too many meshes: {e}"), "export fewer instances"))?;
+        let least = match primitive.mode() {
+            Mode::TriangleStrip | Mode::TriangleFan => 3,
+            Mode::LineStrip | Mode::LineLoop => 2,
+            Mode::Points | Mode::Lines | Mode::Triangles => 0,
+        };
+        if indices.len() < least {
+            let found = indices.len();
+            self.notes.add(Treated::NotRead, || {
+                wrong(
+                    format!("{called}: has {found} corners, and needs {least}"),
+                    "add corners, or remove it",
+                )
+            });
+        }
         let mut corners = Vec::with_capacity(indices.len());
         for index in indices {
             let point = points.get(index as usize).ok_or_else(|| {
@@ -145,14 +190,10 @@ impl Reader<'_> {
             })?;
             corners.push(self.welded.corner(place(placed, *point)));
         }
-        let fans = &mut self.fans;
+        let (fans, loose) = (&mut self.fans, &mut self.loose);
         match primitive.mode() {
             Mode::Triangles => {
-                if corners.len() % 3 != 0 {
-                    let what =
-                        format!("{called}: has {} corners, and triangles have three each", corners.len());
-                    return Err(wrong(what, "export it again"));
-                }
+                whole(corners.len(), 3, "triangles have three", &called)?;
                 corners.chunks_exact(3).for_each(|c| fans.single([c[0], c[1], c[2]]));
             }
             Mode::TriangleStrip => corners.windows(3).enumerate().for_each(|(at, c)| {
@@ -163,12 +204,15 @@ impl Reader<'_> {
                     rest.windows(2).for_each(|c| fans.of_strip([first, c[0], c[1]], false));
                 }
             }
-            Mode::Points => corners.iter().for_each(|&a| fans.single([a, a, a])),
-            Mode::Lines => corners.chunks_exact(2).for_each(|c| fans.single([c[0], c[1], c[1]])),
+            Mode::Points => corners.iter().for_each(|&vertex| loose.point(vertex)),
+            Mode::Lines => {
+                whole(corners.len(), 2, "lines have two", &called)?;
+                corners.chunks_exact(2).for_each(|c| loose.segment([c[0], c[1]]));
+            }
             mode @ (Mode::LineStrip | Mode::LineLoop) => {
-                corners.windows(2).for_each(|c| fans.single([c[0], c[1], c[1]]));
+                corners.windows(2).for_each(|c| loose.segment([c[0], c[1]]));
                 if let (Mode::LineLoop, [first, .., last]) = (mode, &corners[..]) {
-                    fans.single([*last, *first, *first]);
+                    loose.segment([*last, *first]);
                 }
             }
         }
@@ -185,13 +229,27 @@ impl Reader<'_> {
                 )
             });
         }
+        if self.other_scenes > 0 {
+            self.notes.add_many(Treated::NotRead, self.other_scenes, || {
+                wrong("the file has several scenes, and the default one is read", "export one scene")
+            });
+        }
         if self.moved > 0 {
             self.notes.add_many(Treated::NotRead, self.moved, || {
                 wrong("skins and morph targets move a mesh, which is read at rest", "export the posed mesh")
             });
         }
-        Ok(Parsed { positions: positions(self.welded.points), fans: self.fans, notes: self.notes })
+        let positions = positions(self.welded.points);
+        Ok(Parsed { positions, fans: self.fans, loose: self.loose, notes: self.notes })
     }
+}
+
+/// Refuses corners that do not make whole triangles or lines.
+fn whole(corners: usize, each: usize, what: &str, called: &str) -> Result<(), Problem> {
+    if corners.is_multiple_of(each) {
+        return Ok(());
+    }
+    Err(wrong(format!("{called}: has {corners} corners, and {what} each"), "export it again"))
 }
 
 /// The matrix of a node below another.

@@ -1,8 +1,9 @@
-//! OBJ files to positions and faces: the keywords `v`, `f`, `l` and `p`. All others are counted, or
+//! OBJ files to positions, faces, edges and points: the keywords `v`, `f`, `l` and `p`. All others are counted, or
 //! known to hold no geometry.
 
 mod word;
 
+use crate::loose::Loose;
 use crate::mesh_file::Parsed;
 use crate::note::{Notes, Treated};
 use crate::polygons::Fans;
@@ -16,6 +17,32 @@ use word::Word;
 /// as floats only if each is one exactly.
 pub(crate) fn read(bytes: &[u8], problems: &mut Problems) -> Result<Parsed, Problem> {
     let mut obj = Obj::default();
+    whole_lines(bytes, |line| match line {
+        Line::Whole { line, text } => obj.line(line, text).or_else(|problem| problems.add(problem)),
+        Line::Joined { line, word } => problems.add(ObjProblem::Joined { line, found: shown(word) }),
+    })?;
+    let vertices = obj.points.len();
+    if obj.ahead > vertices as i64 {
+        // Seldom: the first reference need not be that to the last vertex.
+        whole_lines(bytes, |line| match line {
+            Line::Whole { line, text } => missing(line, text, vertices, problems),
+            Line::Joined { .. } => Ok(()),
+        })?;
+        problems.sort_by_line();
+    }
+    Ok(Parsed { positions: positions(obj.points), fans: obj.faces, loose: obj.loose, notes: obj.notes })
+}
+
+/// A line of a file, counted from 1.
+enum Line<'a> {
+    /// Whole: of several that a backslash joins, with the number of the first.
+    Whole { line: usize, text: &'a [u8] },
+    /// Joined to another, and it begins with a vertex or a face, which would be lost.
+    Joined { line: usize, word: &'a [u8] },
+}
+
+/// Passes all lines on.
+fn whole_lines(bytes: &[u8], mut each: impl FnMut(Line<'_>) -> Result<(), Problem>) -> Result<(), Problem> {
     let mut joined = Vec::new();
     let mut first = 0;
     for (i, line) in lines(bytes).enumerate() {
@@ -23,25 +50,40 @@ pub(crate) fn read(bytes: &[u8], problems: &mut Problems) -> Result<Parsed, Prob
         if joined.is_empty() {
             first = i + 1;
         } else if let Some(word @ (b"v" | b"f")) = words(line).next() {
-            // No argument has that form: a vertex or a face would be lost.
-            problems.add(ObjProblem::Joined { line: i, found: shown(word) })?;
+            // No argument has that form.
+            each(Line::Joined { line: i, word })?;
         }
         // A comment that ends in a backslash, such as a path, does not continue on the next line.
         if let Some(part) = line.strip_suffix(b"\\").filter(|part| !part.contains(&b'#')) {
             joined.extend_from_slice(part);
             joined.push(b' ');
         } else if joined.is_empty() {
-            obj.line(first, line).or_else(|problem| problems.add(problem))?;
+            each(Line::Whole { line: first, text: line })?;
         } else {
             joined.extend_from_slice(line);
-            obj.line(first, &joined).or_else(|problem| problems.add(problem))?;
+            each(Line::Whole { line: first, text: &joined })?;
             joined.clear();
         }
     }
-    if !joined.is_empty() {
-        obj.line(first, &joined).or_else(|problem| problems.add(problem))?;
+    if joined.is_empty() { Ok(()) } else { each(Line::Whole { line: first, text: &joined }) }
+}
+
+/// Adds the references of a line to vertices that the file does not have. Problems of their form are
+/// known.
+fn missing(line: usize, text: &[u8], vertices: usize, problems: &mut Problems) -> Result<(), Problem> {
+    let mut words = statement(text);
+    if !words.next().is_some_and(|word| matches!(Word::of(word), Word::Face | Word::Line | Word::Point)) {
+        return Ok(());
     }
-    obj.finish(problems)
+    let index = |word: &[u8]| word.split(|&b| b == b'/').next().and_then(parse::<i64>);
+    let mut far = words.filter_map(index).filter(|index| *index > vertices as i64);
+    far.try_for_each(|index| problems.add(ObjProblem::Index { line, index, vertices }))
+}
+
+/// The words of a line, without a comment.
+fn statement(text: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let end = text.iter().position(|&b| b == b'#').unwrap_or(text.len());
+    words(&text[..end])
 }
 
 /// Lines without their ends.
@@ -67,18 +109,17 @@ fn words(text: &[u8]) -> impl Iterator<Item = &[u8]> {
 struct Obj {
     points: Vec<[f64; 3]>,
     faces: Fans,
+    loose: Loose,
     notes: Notes,
-    /// Lines and indices of references to vertices that are not defined yet: each larger than those
-    /// before it.
-    ahead: Vec<(usize, i64)>,
+    /// The largest reference to a vertex that was not defined yet.
+    ahead: i64,
 }
 
 impl Obj {
     fn line(&mut self, line: usize, text: &[u8]) -> Result<(), ObjProblem> {
-        let end = text.iter().position(|&b| b == b'#').unwrap_or(text.len());
-        let mut words = words(&text[..end]);
+        let mut words = statement(text);
         let Some(word) = words.next() else { return Ok(()) };
-        if text[..end].contains(&0) {
+        if statement(text).any(|word| word.contains(&0)) {
             return Err(ObjProblem::Nul { line });
         }
         match Word::of(word) {
@@ -86,7 +127,7 @@ impl Obj {
             Word::Face => self.face(line, words)?,
             Word::Line => self.segments(line, words)?,
             Word::Point => {
-                words.try_for_each(|word| self.corner(line, word).map(|a| self.faces.single([a, a, a])))?
+                words.try_for_each(|word| self.corner(line, word).map(|vertex| self.loose.point(vertex)))?
             }
             Word::Quiet => {}
             Word::Element => {
@@ -139,10 +180,10 @@ impl Obj {
     /// The segments of a line, from each corner to the next.
     fn segments<'a>(&mut self, line: usize, words: impl Iterator<Item = &'a [u8]>) -> Result<(), ObjProblem> {
         let corners: Vec<u32> = words.map(|word| self.corner(line, word)).collect::<Result<_, _>>()?;
-        corners.windows(2).for_each(|ends| self.faces.single([ends[0], ends[1], ends[1]]));
+        corners.windows(2).for_each(|ends| self.loose.segment([ends[0], ends[1]]));
         if corners.len() < 2 {
             let corners = corners.len();
-            self.notes.add(Treated::LeftOut, || ObjProblem::ShortFace { line, corners }.into());
+            self.notes.add(Treated::LeftOut, || ObjProblem::ShortLine { line, corners }.into());
         }
         Ok(())
     }
@@ -167,18 +208,10 @@ impl Obj {
             return Err(ObjProblem::Back { line, index, vertices });
         }
         let index_u32 = u32::try_from(from_0).map_err(|_| ObjProblem::Index { line, index, vertices })?;
-        if from_0 >= vertices as i64 && self.ahead.last().is_none_or(|(_, largest)| *largest < index) {
-            self.ahead.push((line, index));
+        if from_0 >= vertices as i64 {
+            self.ahead = self.ahead.max(index);
         }
         Ok(index_u32)
-    }
-
-    fn finish(self, problems: &mut Problems) -> Result<Parsed, Problem> {
-        let vertices = self.points.len();
-        for (line, index) in self.ahead.into_iter().rev().take_while(|(_, index)| *index > vertices as i64) {
-            problems.add(ObjProblem::Index { line, index, vertices })?;
-        }
-        Ok(Parsed { positions: positions(self.points), fans: self.faces, notes: self.notes })
     }
 }
 

@@ -5,15 +5,16 @@
 
 use super::header::{Element, Encoding, Header, Kind, Property, is_corners};
 use super::source::{Failure, Scalar, Source, Value};
+use crate::loose::Loose;
 use crate::mesh_file::Parsed;
 use crate::note::{Notes, Treated};
 use crate::polygons::Fans;
-use crate::problems::Problems;
+use crate::problems::{Problems, wrong};
 use crate::shown::shown;
 use nearmiss::mesh::{MAX_FACES, MAX_VERTICES, PlyProblem, Positions, Problem};
 
 /// Elements without surfaces that scanners and modellers write; they are skipped without a note.
-const QUIET: [&str; 5] = ["edge", "material", "camera", "user", "range_grid"];
+const QUIET: [&str; 4] = ["material", "camera", "user", "range_grid"];
 
 /// Reads the whole file; faces keep the file's order.
 pub(crate) fn read(bytes: &[u8], problems: &mut Problems) -> Result<Parsed, Problem> {
@@ -21,13 +22,16 @@ pub(crate) fn read(bytes: &[u8], problems: &mut Problems) -> Result<Parsed, Prob
     let vertex = header.elements.iter().find(|e| e.name == "vertex").ok_or(PlyProblem::NoVertices)?;
     let mut source = Source::new(&bytes[header.size..], header.encoding);
     let mut positions = Positions::F32(Vec::new());
-    let (mut fans, mut notes) = (Fans::default(), Notes::default());
+    let (mut fans, mut loose, mut notes) = (Fans::default(), Loose::default(), Notes::default());
     for element in &header.elements {
         promise(element, &source)?;
         match element.name {
             "vertex" => positions = vertices(element, &mut source)?,
             "face" => polygons(element, vertex.count, &mut source, (&mut fans, &mut notes, problems))?,
-            "tristrips" => strips(element, vertex.count, &mut source, (&mut fans, problems))?,
+            "tristrips" => strips(element, vertex.count, &mut source, (&mut fans, &mut notes, problems))?,
+            "edge" if ends(element).is_some() => {
+                edges(element, vertex.count, &mut source, (&mut loose, problems))?;
+            }
             _ if element.properties.is_empty() => {} // any number of entries, no room
             name => {
                 entries(element, &mut source, |_, _, _, _| Ok(()))?;
@@ -41,7 +45,7 @@ pub(crate) fn read(bytes: &[u8], problems: &mut Problems) -> Result<Parsed, Prob
     }
     source.begin_entry();
     match (source.left(), header.encoding) {
-        (0, _) => Ok(Parsed { positions, fans, notes }),
+        (0, _) => Ok(Parsed { positions, fans, loose, notes }),
         (_, Encoding::Ascii) => Err(PlyProblem::TrailingText { found: shown(source.end_entry()) }.into()),
         (bytes, _) => Err(PlyProblem::Trailing { bytes }.into()),
     }
@@ -135,23 +139,71 @@ fn index_fault(face: u64, corner: u64, index: i64, vertices: u64) -> Option<PlyP
     }
 }
 
+/// The columns of both ends of an edge.
+fn ends(element: &Element<'_>) -> Option<[usize; 2]> {
+    let column = |name: &str| {
+        let is_end = |p: &Property<'_>| p.name == name && matches!(p.kind, Kind::One(of) if of.is_integer());
+        element.properties.iter().position(is_end)
+    };
+    Some([column("vertex1")?, column("vertex2")?])
+}
+
+/// Reads edges. One between a vertex and itself is a point.
+fn edges(
+    element: &Element<'_>,
+    vertices: u64,
+    source: &mut Source<'_>,
+    (loose, problems): (&mut Loose, &mut Problems),
+) -> Result<(), Problem> {
+    within("edges", element.count, MAX_FACES)?;
+    let columns = ends(element).unwrap_or_default();
+    let last = columns[0].max(columns[1]);
+    let mut pair = [0; 2];
+    entries(element, source, |edge, at, _, value| {
+        let (Some(end), Value::Int(index)) = (columns.iter().position(|&column| column == at), value) else {
+            return Ok(());
+        };
+        pair[end] = match u32::try_from(index).ok().filter(|&vertex| u64::from(vertex) < vertices) {
+            Some(vertex) => vertex,
+            None => problems.add(PlyProblem::End { edge, index, vertices }).map(|()| 0)?,
+        };
+        if at == last {
+            loose.segment(pair);
+        }
+        Ok(())
+    })
+}
+
 /// Reads strips of triangles; -1 ends one and begins the next.
 fn strips(
     element: &Element<'_>,
     vertices: u64,
     source: &mut Source<'_>,
-    (faces, problems): (&mut Fans, &mut Problems),
+    (faces, notes, problems): (&mut Fans, &mut Notes, &mut Problems),
 ) -> Result<(), Problem> {
     let column = corners(element)?;
     let (mut last, mut turned) = ([None; 2], false);
+    let (mut length, mut strips) = (0, 0);
+    // The end of a strip of so many vertices.
+    let mut end = |length: u64| {
+        if matches!(length, 1 | 2) {
+            let what = format!("strip {strips} has {length} of the three vertices of a triangle");
+            notes.add(Treated::NotRead, || wrong(what, "remove it, or add vertices"));
+        }
+        strips += u64::from(length > 0);
+    };
     entries(element, source, |strip, at, item, value| {
         match (item, value) {
             _ if at != column => {}
-            (Item::Length, _) | (Item::At(_), Value::Int(-1)) => (last, turned) = ([None; 2], false),
+            (Item::Length, _) | (Item::At(_), Value::Int(-1)) => {
+                end(std::mem::take(&mut length));
+                (last, turned) = ([None; 2], false);
+            }
             (Item::At(corner), Value::Int(index)) => {
                 if let Some(problem) = index_fault(strip, corner, index, vertices) {
                     return problems.add(problem);
                 }
+                length += 1;
                 let vertex = index as u32;
                 if let [Some(a), Some(b)] = last {
                     faces.of_strip([a, b, vertex], turned);
@@ -163,6 +215,7 @@ fn strips(
         }
         Ok(())
     })?;
+    end(length);
     within("triangles", faces.faces.len() as u64, MAX_FACES)
 }
 

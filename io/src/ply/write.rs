@@ -5,9 +5,9 @@ use nearmiss::mesh::{Mesh, Positions};
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-/// Writes a mesh as binary little-endian PLY, floats or doubles as they are.
-/// [`MeshFile::read`](crate::MeshFile::read) returns equal vertices and triangles, bit by bit.
-/// Replaces the file.
+/// Writes a mesh as binary little-endian PLY, floats or doubles as they are. Edges and points are
+/// the element `edge`; a point is an edge from its vertex to itself.
+/// [`MeshFile::read`](crate::MeshFile::read) returns an equal mesh, bit by bit. Replaces the file.
 ///
 /// # Errors
 /// [`Error::Output`] with the operating system's text.
@@ -47,7 +47,8 @@ pub fn encode_ply_coloured(mesh: &Mesh, out: &mut impl Write, colours: &[[u8; 3]
     encode(mesh, out, |face| Some(colours[face]))
 }
 
-/// Writes the header, the points and the faces, each with its colour. Either all have one, or none.
+/// Writes the header, the vertices, the faces, each with its colour, and the edges. Either all faces
+/// have a colour, or none.
 fn encode(
     mesh: &Mesh,
     out: &mut impl Write,
@@ -61,6 +62,10 @@ fn encode(
     write!(out, "element face {}\nproperty list uchar uint vertex_indices\n", mesh.face_count())?;
     if mesh.face_count() > 0 && colour(0).is_some() {
         ["red", "green", "blue"].iter().try_for_each(|name| writeln!(out, "property uchar {name}"))?;
+    }
+    let loose = mesh.edges().len() + mesh.points().len();
+    if loose > 0 {
+        write!(out, "element edge {loose}\nproperty uint vertex1\nproperty uint vertex2\n")?;
     }
     out.write_all(b"end_header\n")?;
     match mesh.positions() {
@@ -76,5 +81,7 @@ fn encode(
         face.iter().try_for_each(|index| out.write_all(&index.to_le_bytes()))?;
         colour(at).map_or(Ok(()), |colour| out.write_all(&colour))?;
     }
-    Ok(())
+    let points = mesh.points().iter().map(|&point| [point; 2]);
+    let mut ends = mesh.edges().iter().copied().chain(points).flatten();
+    ends.try_for_each(|vertex| out.write_all(&vertex.to_le_bytes()))
 }

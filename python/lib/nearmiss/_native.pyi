@@ -21,15 +21,39 @@ _Q = TypeVar("_Q", bound="Query[Any]")
 def is_on_gpu(object: Any) -> bool:
     """Return whether an array is in the memory of an NVIDIA GPU."""
 
-def read_mesh(path: Union[str, PathLike[str]], *, strict: bool = False) -> tuple[NDArray[Any], NDArray[np.uint32]]:
+@overload
+def read_mesh(
+    path: Union[str, PathLike[str]], *, strict: bool = False, elements: Literal[False] = False
+) -> tuple[NDArray[Any], NDArray[np.uint32]]:
     """Read a PLY, OBJ, STL, OFF or glTF file, also with .gz appended.
 
     - `path`: the file.
     - `strict`: raise InputError for each part of the file that would be skipped or cut otherwise.
+    - `elements`: also return edges and points of no face.
 
     Returns (vertices, faces): (n, 3) float32 or float64 as in the file, and (m, 3) uint32. Polygons
-    are cut into triangles. A MeshWarning counts parts that are skipped, left out (faces of one or two
-    corners) or cut as a fan (faces that cross themselves).
+    are cut into triangles. Lines and points of the file come behind them as faces [a, b, b] and
+    [p, p, p]. With `elements`, returns (vertices, faces, edges, points) for Body: edges are (k, 2)
+    uint32 and points (l,) uint32. A MeshWarning counts parts that are skipped, left out (faces of
+    one or two corners) or cut as a fan (faces that cross themselves).
+
+    Raises InputError for a file that is no mesh, with the line or element.
+    """
+@overload
+def read_mesh(
+    path: Union[str, PathLike[str]], *, strict: bool = False, elements: Literal[True]
+) -> tuple[NDArray[Any], NDArray[np.uint32], NDArray[np.uint32], NDArray[np.uint32]]:
+    """Read a PLY, OBJ, STL, OFF or glTF file, also with .gz appended.
+
+    - `path`: the file.
+    - `strict`: raise InputError for each part of the file that would be skipped or cut otherwise.
+    - `elements`: also return edges and points of no face.
+
+    Returns (vertices, faces): (n, 3) float32 or float64 as in the file, and (m, 3) uint32. Polygons
+    are cut into triangles. Lines and points of the file come behind them as faces [a, b, b] and
+    [p, p, p]. With `elements`, returns (vertices, faces, edges, points) for Body: edges are (k, 2)
+    uint32 and points (l,) uint32. A MeshWarning counts parts that are skipped, left out (faces of
+    one or two corners) or cut as a fan (faces that cross themselves).
 
     Raises InputError for a file that is no mesh, with the line or element.
     """
