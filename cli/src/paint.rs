@@ -78,10 +78,15 @@ pub fn starts(bodies: &[Body]) -> Vec<(u32, usize)> {
     bodies.iter().scan((0, 0), next).collect()
 }
 
-/// A body's vertices at that time of the step, from 0 to 1; at 0 exactly.
+/// A body's vertices at that time of the step, from 0 to 1; at both ends exactly.
 pub fn placed(body: &Body, time: f64) -> Vec<[f64; 3]> {
     let [from, to] = if body.kind() == BodyKind::Rigid {
         let own = body.positions_t0().to_f64();
+        let step = body.pose_step();
+        let turns = 0.0 < time && time < 1.0 && step.turns();
+        if let Some(pose) = step.at(time).filter(|_| turns) {
+            return own.into_iter().map(|point| pose.apply(point)).collect();
+        }
         body.poses().map(|pose| own.iter().map(|point| pose.apply(*point)).collect())
     } else {
         body.ends().map(Positions::to_f64)

@@ -31,6 +31,21 @@ const DARK: f64 = 0.3;
 /// Half the width of a mark's line, and the radius of its ends, in pixels of a picture of 900; larger in larger ones.
 const LINE: f64 = 1.0;
 const POINT: f64 = 2.6;
+/// The radius of points of no face, as above.
+const DOT: f64 = 1.8;
+/// How light edges and points of no face are: darker than surfaces, so that they are seen on paper.
+const THREAD: f32 = 0.7;
+/// How much of a mark is seen behind a surface.
+const FAINT: f32 = 0.25;
+
+/// Both ends of a face that repeats a vertex, as edges and points of no face do; a point has one end twice.
+fn ends([a, b, c]: [u32; 3]) -> Option<[u32; 2]> {
+    match [a == b, b == c || a == c] {
+        [true, _] => Some([a, c]),
+        [false, true] => Some([a, b]),
+        [false, false] => None,
+    }
+}
 
 impl Picture<'_> {
     /// The camera that looks from the first direction with the second up, both of length 1. Around what
@@ -62,12 +77,20 @@ impl Picture<'_> {
             }
         }
         let larger = (size[0].min(size[1]) as f64 / 900.0).max(0.5);
+        for now in [false, true] {
+            for at in (0..self.faces.len()).filter(|at| is_met[*at] == now) {
+                let Some(ends) = ends(self.faces[at]) else { continue };
+                let radius = if ends[0] == ends[1] { DOT } else { LINE };
+                let colour = self.colours[at].map(|part| THREAD * f32::from(part) / 255.0);
+                canvas.line(ends.map(|vertex| places[vertex as usize]), radius * larger, colour, 0.0);
+            }
+        }
         // A few may be large: they hide little.
         let larger = if self.marks.len() < 10 { 1.8 * larger } else { larger };
         for mark in self.marks {
             let ends = mark.map(|point| camera.place(point));
-            canvas.line(ends, LINE * larger, INK);
-            ends.iter().for_each(|end| canvas.line([*end; 2], POINT * larger, INK));
+            canvas.line(ends, LINE * larger, INK, FAINT);
+            ends.iter().for_each(|end| canvas.line([*end; 2], POINT * larger, INK, FAINT));
         }
         canvas.pixels()
     }

@@ -95,8 +95,9 @@ impl Canvas {
         }
     }
 
-    /// A line with round ends over all that is there; where something is nearer than it, faintly. `radius` is half its width, in pixels.
-    pub fn line(&mut self, [from, to]: [[f64; 3]; 2], radius: f64, colour: Colour) {
+    /// A line with round ends over all that is there. `radius` is half its width, in pixels; `behind` is
+    /// how much of it is seen, 0 to 1, where something is nearer.
+    pub fn line(&mut self, [from, to]: [[f64; 3]; 2], radius: f64, colour: Colour, behind: f32) {
         let range = |k: usize| {
             let [low, high] = [from[k].min(to[k]) - radius, from[k].max(to[k]) + radius];
             let place = |x: f64| (x * FINE as f64).clamp(0.0, self.size[k] as f64) as usize;
@@ -126,7 +127,7 @@ impl Canvas {
                 let depth = from[2] + part * (to[2] - from[2]);
                 // A line on a surface is not behind it.
                 let hidden = f64::from(self.depths[index]) > depth + 2.0 * radius + 1.0;
-                let opaque = if hidden { 0.25 } else { 1.0 };
+                let opaque = if hidden { behind } else { 1.0 };
                 let under = self.colours[index];
                 self.colours[index] = [0, 1, 2].map(|c| under[c] + opaque * (colour[c] - under[c]));
             }
@@ -249,7 +250,7 @@ mod tests {
     fn lines_are_faint_behind_what_is_nearer() {
         let mut canvas = Canvas::new([20, 10], WHITE);
         draw(&mut canvas, [[-50.0, -50.0, 40.0], [10.0, -50.0, 40.0], [10.0, 90.0, 40.0]], WHITE);
-        canvas.line([[0.0, 5.0, 0.0], [20.0, 5.0, 0.0]], 2.0, [0.0; 3]);
+        canvas.line([[0.0, 5.0, 0.0], [20.0, 5.0, 0.0]], 2.0, [0.0; 3], 0.25);
         assert_eq!((pixel(&canvas, 4, 5), pixel(&canvas, 15, 5)), ([191; 3], [0; 3]));
         assert_eq!(pixel(&canvas, 15, 1), [255; 3]);
     }
@@ -260,7 +261,7 @@ mod tests {
         draw(&mut canvas, [[-9.0, 0.0, 0.0], [-5.0, 0.0, 0.0], [-5.0, 4.0, 0.0]], RED);
         draw(&mut canvas, [[1e6, 0.0, 0.0], [2e6, 0.0, 0.0], [2e6, 4.0, 0.0]], RED);
         draw(&mut canvas, [[0.0, 0.0, 0.0], [2.0, 2.0, 0.0], [4.0, 4.0, 0.0]], RED);
-        canvas.line([[-90.0, -90.0, 0.0], [-80.0, -80.0, 0.0]], 3.0, RED);
+        canvas.line([[-90.0, -90.0, 0.0], [-80.0, -80.0, 0.0]], 3.0, RED, 0.25);
         assert!(canvas.colours.iter().all(|colour| *colour == WHITE));
     }
 }

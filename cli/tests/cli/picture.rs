@@ -160,6 +160,17 @@ fn bodies_are_drawn_where_they_are_at_a_time() {
          poses = [{}, { translation = [0, 0, -8] }]\n[[body]]\nmesh = \"rest.obj\"\nkind = \"fixed\"\n";
     let (posed, _) = drawn(&[&folder.write("scene.toml", scene), "--size", "200x200", "--time", "0.5"], &out);
     assert_eq!((0..200).find(|y| posed.at(34, *y) != PAPER), Some(middle));
+    // A body that turns by half a turn is on its arc, at x = 4 to 6. On straight lines it has no area.
+    let turned = |path: &str| {
+        let scene = format!(
+            "[[body]]\nmesh = \"from.obj\"\nkind = \"rigid\"\n{path}\
+             poses = [{{}}, {{ rotation = [0, 1, 0, 0] }}]\n[[body]]\nmesh = \"rest.obj\"\nkind = \"fixed\"\n"
+        );
+        let scene = folder.write("turn.toml", &scene);
+        let (picture, _) = drawn(&[&scene, "--size", "200x200", "--time", "0.5"], &out);
+        (0..200).filter(|y| picture.at(75, *y) != PAPER).count()
+    };
+    assert!(turned("") >= 10 && turned("path = \"straight\"\n") < 5, "{}", turned(""));
     for asked in [&["--discrete"][..], &["--near", "1"], &["--distance", "--with", &rest]] {
         let still = refused(2, &[&["picture", &from, "--time", "0.5", "--out", &out], asked].concat());
         assert!(still.contains("--time has no effect: a "), "{still}");
@@ -168,6 +179,39 @@ fn bodies_are_drawn_where_they_are_at_a_time() {
         let text = refused(2, &["picture", &from, &to, "--time", time, "--out", &out]);
         assert!(text.contains("give a number from 0 to 1"), "{text}");
     }
+}
+
+#[test]
+fn threads_and_points_are_drawn_and_hidden() {
+    let folder = Folder::new("picture-threads");
+    // Seen along y: a thread in front of a wall, one behind it, one above it, and a point next to that.
+    let walled = |threads: &str| {
+        format!(
+            "v 0 0 0\nv 10 0 0\nv 10 0 6\nv 0 0 6\nv 1 -2 1\nv 9 -2 1\nv 1 2 3\nv 9 2 3\nv 1 0 9\nv 6 0 9\n\
+             v 9 0 9\nf 1 2 3 4\n{threads}"
+        )
+    };
+    let out = folder.path("a.png");
+    let shot = |threads: &str| {
+        let mesh = folder.write("a.obj", &walled(threads));
+        drawn(&[&mesh, "--size", "200x200"], &out).0
+    };
+    // The frame is the same, with an edge of the wall.
+    let (bare, all) = (shot("l 9 10\np 11\nl 1 2\n"), shot("l 9 10\np 11\nl 5 6\nl 7 8\n"));
+    let differ: Vec<(usize, usize)> = (0..200)
+        .flat_map(|y| (0..200).map(move |x| (x, y)))
+        .filter(|&(x, y)| bare.at(x, y) != all.at(x, y))
+        .collect();
+    assert!(!differ.is_empty(), "the thread in front of the wall is not drawn");
+    let rows: std::collections::BTreeSet<usize> = differ.iter().map(|&(_, y)| y).collect();
+    assert!(rows.len() <= 4, "the thread behind the wall is drawn: {rows:?}");
+    let inked = |columns: std::ops::Range<usize>| {
+        (0..80)
+            .flat_map(|y| columns.clone().map(move |x| (x, y)))
+            .filter(|&(x, y)| bare.at(x, y) != PAPER)
+            .count()
+    };
+    assert!(inked(20..120) > 50 && inked(150..200) > 2, "{} and {}", inked(20..120), inked(150..200));
 }
 
 #[test]
