@@ -27,7 +27,9 @@ pub enum Problem {
         found: &'static str,
     },
     /// An extension without a reader.
-    #[error("has the extension {found:?}, which no reader knows; give a .ply or an .obj file")]
+    #[error(
+        "has the extension {found:?}, which no reader of meshes knows; give a .ply, .obj, .stl, .off, .gltf or .glb file"
+    )]
     UnknownExtension {
         /// The extension without its dot; empty if there is none.
         found: String,
@@ -84,7 +86,7 @@ pub enum Problem {
     },
     /// A pivot or a rotation vector that is not finite, or a turn of more than a whole one.
     #[error(
-        "turns by {turn:?} about {pivot:?}; give a finite pivot and a rotation vector of at most 2 pi, in radians: \
+        "turns by {turn:?} about {pivot:?}; give a pivot of coordinates up to 2^480 and a rotation vector of at most 2 pi, in radians: \
          divide a longer step"
     )]
     NoTurn {

@@ -21,10 +21,10 @@ fn index() -> impl TypedValueParser<Value = u32> {
 
 #[derive(Args)]
 #[command(next_help_heading = QUERY)]
-#[command(override_usage = "nearmiss explain --vf|--ee|--tt <I> <J> [OPTIONS] <MESH>...")]
-#[command(group = ArgGroup::new("which").required(true).args(["vf", "ee", "tt", "queries", "points"]))]
+#[command(override_usage = "nearmiss explain --vf|--ee|--ev|--vv|--tt <I> <J> [OPTIONS] <MESH>...")]
+#[command(group = ArgGroup::new("which").required(true).args(["vf", "ee", "ev", "vv", "tt", "queries", "points"]))]
 pub struct ExplainArgs {
-    /// Read a mesh (.ply, .obj), or the two ends of a step
+    /// Read a mesh, or the two ends of a step
     #[arg(num_args = 1.., value_name = "MESH", help_heading = None::<&str>, conflicts_with_all = ["queries", "points"])]
     pub meshes: Vec<PathBuf>,
     /// Add a second mesh; give it twice for both ends of a step
@@ -32,6 +32,11 @@ pub struct ExplainArgs {
     /// The second index is then one of this mesh.
     #[arg(long, value_name = "MESH", requires = "meshes")]
     pub with: Vec<PathBuf>,
+    /// Merge vertices with equal coordinates, as detect --weld
+    ///
+    /// Edges then have other numbers.
+    #[arg(long, requires = "meshes")]
+    pub weld: bool,
     /// Explain a vertex of the first mesh and a face of the last
     ///
     /// The indices are feature_a and feature_b of a vf row of detect. If the vertex is on the second
@@ -43,6 +48,14 @@ pub struct ExplainArgs {
     #[arg(long, num_args = 2, allow_negative_numbers = true, value_parser = index(),
         value_names = ["EDGE", "EDGE"], requires = "meshes")]
     pub ee: Option<Vec<u32>>,
+    /// Explain an edge of no face and a vertex, as detect lists them
+    #[arg(long, num_args = 2, allow_negative_numbers = true, value_parser = index(),
+        value_names = ["EDGE", "VERTEX"], requires = "meshes")]
+    pub ev: Option<Vec<u32>>,
+    /// Explain two vertices, as detect lists them
+    #[arg(long, num_args = 2, allow_negative_numbers = true, value_parser = index(),
+        value_names = ["VERTEX", "VERTEX"], requires = "meshes")]
+    pub vv: Option<Vec<u32>>,
     /// Explain two triangles at t = 0
     #[arg(long, num_args = 2, allow_negative_numbers = true, value_parser = index(),
         value_names = ["TRIANGLE", "TRIANGLE"], requires = "meshes")]

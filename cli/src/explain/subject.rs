@@ -59,6 +59,9 @@ pub fn of(args: &ExplainArgs) -> Result<Subject, Error> {
     if !args.with.is_empty() {
         bodies.push(body(&args.with)?);
     }
+    if args.weld {
+        bodies.iter_mut().for_each(|body| *body = body.weld().0);
+    }
     let (a, b) = (&bodies[0], &bodies[bodies.len() - 1]);
     let self_query = bodies.len() == 1;
     let pair = |indices: &Option<Vec<u32>>| match indices.as_deref() {
@@ -68,23 +71,23 @@ pub fn of(args: &ExplainArgs) -> Result<Subject, Error> {
     if let Some((i, j)) = pair(&args.tt) {
         return triangles(a, b, self_query, [i, j]);
     }
-    let (of, corners, features) = if let Some((v, f)) = pair(&args.vf) {
-        ([named("vertex", v, a), named("face", f, b)], [vertex(a, v)?, face(b, f)?], Features::VertexFace)
+    let ([p, q], features) = if let Some((v, f)) = pair(&args.vf) {
+        ([vertex(a, v)?, face(b, f)?], Features::VertexFace)
     } else if let Some((i, j)) = pair(&args.ee) {
-        ([named("edge", i, a), named("edge", j, b)], [edge(a, i)?, edge(b, j)?], Features::EdgeEdge)
+        ([edge(a, i)?, edge(b, j)?], Features::EdgeEdge)
+    } else if let Some((i, v)) = pair(&args.ev) {
+        // The test of an edge or a point is that of a face that repeats a vertex.
+        ([vertex(b, v)?, edge(a, i)?.repeated()], Features::VertexFace)
+    } else if let Some((v, w)) = pair(&args.vv) {
+        ([vertex(a, v)?, vertex(b, w)?.repeated()], Features::VertexFace)
     } else {
         // clap requires one of them.
         return Err(Error::Bug { what: "a pair without features".into() });
     };
-    let at = |end: bool| -> Result<Vec<[f64; 3]>, Error> {
-        let points = [a, b]
-            .into_iter()
-            .zip(&corners)
-            .flat_map(|(body, ids)| ids.iter().map(move |v| point(body, *v, end)));
-        points.collect()
-    };
+    let of = [&p, &q].map(|feature| format!("{} of {}", feature.called, feature.body.name()));
+    let at = |end: bool| -> Result<Vec<[f64; 3]>, Error> { p.points(end).chain(q.points(end)).collect() };
     let mut notes = Vec::new();
-    if self_query && corners[0].iter().any(|v| corners[1].contains(v)) {
+    if self_query && p.corners.iter().any(|v| q.corners.contains(v)) {
         notes.push("they share a vertex: detect does not test such pairs".to_owned());
     }
     let case = Case { features, positions_t0: four(at(false)?)?, positions_t1: four(at(true)?)? };
@@ -144,7 +147,7 @@ fn from_numbers(args: &ExplainArgs, points: &[f64]) -> Result<Subject, Error> {
 }
 
 fn triangles(a: &Body, b: &Body, self_query: bool, [i, j]: [u32; 2]) -> Result<Subject, Error> {
-    let corners = [face(a, i)?, face(b, j)?];
+    let corners = [face(a, i)?.corners, face(b, j)?.corners];
     let place =
         |body: &Body, ids: &[u32]| ids.iter().map(|v| point(body, *v, false)).collect::<Result<Vec<_>, _>>();
     let triangle = |body, ids| Ok::<Triangle, Error>(three(place(body, ids)?));
@@ -190,6 +193,32 @@ fn features(between: Between) -> Features {
     }
 }
 
+/// A feature of a body.
+struct Feature<'a> {
+    body: &'a Body,
+    /// Its kind and number.
+    called: String,
+    corners: Vec<u32>,
+}
+
+impl<'a> Feature<'a> {
+    fn new(body: &'a Body, what: &'static str, i: u32, corners: Vec<u32>) -> Feature<'a> {
+        Feature { body, called: format!("{what} {i}"), corners }
+    }
+
+    /// Its corners at t = 0, or at the end of the step.
+    fn points(&self, end: bool) -> impl Iterator<Item = Result<[f64; 3], Error>> {
+        self.corners.iter().map(move |v| point(self.body, *v, end))
+    }
+
+    /// The same as a face that repeats its last vertex.
+    fn repeated(mut self) -> Feature<'a> {
+        let last = self.corners.last().copied().unwrap_or_default();
+        self.corners.resize(3, last);
+        self
+    }
+}
+
 fn named(what: &str, i: u32, body: &Body) -> String {
     format!("{what} {i} of {}", body.name())
 }
@@ -203,19 +232,20 @@ fn no_such(body: &Body, what: &'static str, i: u32, count: usize) -> Error {
     Error::Input { file: body.name().to_owned(), problem }
 }
 
-fn vertex(body: &Body, i: u32) -> Result<Vec<u32>, Error> {
+fn vertex(body: &Body, i: u32) -> Result<Feature<'_>, Error> {
     let count = body.vertex_count();
-    if (i as usize) < count { Ok(vec![i]) } else { Err(no_such(body, "vertex", i, count)) }
+    let found = ((i as usize) < count).then(|| Feature::new(body, "vertex", i, vec![i]));
+    found.ok_or_else(|| no_such(body, "vertex", i, count))
 }
 
-fn face(body: &Body, i: u32) -> Result<Vec<u32>, Error> {
-    let found = body.elements().get(i as usize).map(|face| face.to_vec());
+fn face(body: &Body, i: u32) -> Result<Feature<'_>, Error> {
+    let found = body.elements().get(i as usize).map(|face| Feature::new(body, "face", i, face.to_vec()));
     found.ok_or_else(|| no_such(body, "face", i, body.element_count()))
 }
 
-fn edge(body: &Body, i: u32) -> Result<Vec<u32>, Error> {
+fn edge(body: &Body, i: u32) -> Result<Feature<'_>, Error> {
     let edges = Topology::of(body).edges;
-    let found = edges.get(i as usize).map(|ends| ends.to_vec());
+    let found = edges.get(i as usize).map(|ends| Feature::new(body, "edge", i, ends.to_vec()));
     found.ok_or_else(|| no_such(body, "edge", i, edges.len()))
 }
 

@@ -50,6 +50,30 @@ fn a_vertex_and_a_face_of_a_mesh() {
     assert_eq!(report["solvers"][0]["toi"].as_f64(), Some(toi));
 }
 
+/// A seam: welding gives edges other numbers, and explain follows.
+#[test]
+fn numbers_are_those_of_welded_meshes() {
+    let folder = Folder::new("explain-weld");
+    let mesh = |name: &str, z: f64| {
+        let strip = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
+        let rod = format!("v 0.6 -1 {z}\nv 0.6 2 {z}\nv 3 3 {z}\n");
+        folder.write(name, &format!("{strip}{rod}f 1 2 3\nf 4 6 5\nf 7 8 9\n"))
+    };
+    let (t0, t1) = (mesh("t0.obj", 1.0), mesh("t1.obj", -1.0));
+    ok(&["detect", &t0, &t1, "--weld", "--out", &folder.path("all.csv")]);
+    let contacts = folder.read("all.csv");
+    let mut explained = 0;
+    for row in contacts.lines().filter(|row| row.starts_with("ee,")) {
+        let fields: Vec<&str> = row.split(',').collect();
+        let args = ["explain", &t0, &t1, "--ee", fields[1], fields[2], "--json"];
+        let toi = |report: Value| report["solvers"][0]["toi"].as_f64();
+        let wanted = fields[3].parse::<f64>().ok();
+        assert_eq!(toi(summary(&[&args[..], &["--weld"]].concat())), wanted, "{row}");
+        explained += u32::from(toi(summary(&args)) != wanted);
+    }
+    assert!(explained > 0, "without welding the numbers are others: {contacts}");
+}
+
 #[test]
 fn edges_two_bodies_and_triangles() {
     let folder = Folder::new("explain-ee");

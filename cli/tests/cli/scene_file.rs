@@ -315,7 +315,10 @@ fn a_scene_stands_alone() {
         );
     }
     assert!(refused(2, &["detect", scene, "--rebuild-every", "2"]).contains("--rebuild-every has no effect"));
-    assert!(refused(3, &["explain", scene, "--vf", "0", "0"]).contains("\"toml\", which no reader knows"));
+    assert!(
+        refused(3, &["explain", scene, "--vf", "0", "0"])
+            .contains("\"toml\", which no reader of meshes knows")
+    );
     let moving = beside(&folder, "meshes = [\"parts/tip.obj\", \"parts/tip.obj\", \"parts/tip.obj\"]");
     assert!(refused(2, &["detect", &moving, "--repeat", "2"]).contains("each of several steps runs once"));
 }
