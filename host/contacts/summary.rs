@@ -10,6 +10,10 @@ use crate::stages::Stages;
 pub struct Summary {
     /// Triangles of all bodies.
     pub triangles: usize,
+    /// Edges of no face, of all bodies.
+    pub edges: usize,
+    /// Points of no face and no edge, of all bodies.
+    pub points: usize,
     /// Vertices of all bodies.
     pub vertices: usize,
     /// Frames: 1 at rest, 2 in motion.

@@ -39,6 +39,8 @@ impl Detector {
         let by_trees = broad == BroadPhase::Tree;
         Summary {
             triangles: bodies.iter().map(Body::face_count).sum(),
+            edges: bodies.iter().map(|body| body.loose_counts()[0]).sum(),
+            points: bodies.iter().map(|body| body.loose_counts()[1]).sum(),
             vertices: bodies.iter().map(Body::vertex_count).sum(),
             frames: if bodies.iter().any(Body::is_moving) { 2 } else { 1 },
             query: query.kind(),

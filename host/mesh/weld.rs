@@ -3,6 +3,7 @@
 use super::difference::difference;
 use super::{Loose, Mesh, Positions};
 use crate::Error;
+use crate::scene::Thickness;
 use std::cmp::Ordering;
 
 /// The representative of each vertex.
@@ -33,6 +34,18 @@ impl Vertices {
             merged += group.len() - 1;
         }
         Vertices { names, merged }
+    }
+
+    /// Radii of the representatives: each has the largest of those that it represents.
+    pub fn radii(&self, of: &Thickness) -> Thickness {
+        let Thickness::Each(radii) = of else { return of.clone() };
+        let mut largest = radii.clone();
+        for (&radius, &name) in radii.iter().zip(&self.names) {
+            if let Some(own) = largest.get_mut(name as usize) {
+                *own = own.max(radius);
+            }
+        }
+        Thickness::Each(largest)
     }
 }
 

@@ -249,6 +249,12 @@ impl Body {
         self.elements.corners.len()
     }
 
+    /// Numbers of edges of no face, and of points of no face and no edge.
+    pub(crate) fn loose_counts(&self) -> [usize; 2] {
+        let Elements { corners, faces, edges } = &self.elements;
+        [*edges, corners.len() - faces - edges]
+    }
+
     /// Kind of an element.
     pub(crate) fn element_kind(&self, element: usize) -> Element {
         self.elements.kind(element)
@@ -289,7 +295,7 @@ impl Body {
     }
 
     /// Returns the body with vertices merged that coincide in all of its frames, and their number;
-    /// as [`Mesh::weld`].
+    /// as [`Mesh::weld`]. The largest radius of merged vertices is that of their representative.
     pub fn weld(&self) -> (Body, usize) {
         self.weld_through(&[])
     }
@@ -301,7 +307,8 @@ impl Body {
         let (mut faces, mut loose) = (self.faces().to_vec(), self.loose.clone());
         rename(&vertices, &mut faces, &mut loose);
         let elements = Elements::new(faces, &loose, self.vertex_count());
-        (Body { elements, loose, ..self.clone() }, vertices.merged)
+        let thickness = vertices.radii(&self.thickness);
+        (Body { elements, loose, thickness, ..self.clone() }, vertices.merged)
     }
 
     /// Number of vertices of elements that coincide, in all frames, with an earlier one;

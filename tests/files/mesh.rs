@@ -3,6 +3,7 @@
 
 use nearmiss::Error;
 use nearmiss::mesh::{Body, Mesh, NO_EDGE, Positions, Problem, Topology, Violation, check};
+use nearmiss::scene::Thickness;
 use nearmiss_io::{Format, MeshFile, encode_ply_coloured, write_ply};
 use rand::{Rng, SeedableRng, rngs::SmallRng};
 use std::path::PathBuf;
@@ -296,4 +297,18 @@ fn points_of_nalgebra_keep_their_precision() {
     assert_eq!(Points::from(&points[..]), Points::F32(&[[0.1, 2.0, -3.0], [4.0, 5.0, 6.0]]));
     let points = [Point3::new(0.1f64, 2.0, -3.0)];
     assert_eq!(Points::from(&points[..]), Points::F64(&[[0.1, 2.0, -3.0]]));
+}
+
+/// No contact is lost that a vertex had before it was merged.
+#[test]
+fn a_welded_vertex_has_the_largest_radius() {
+    let points =
+        vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+    let mesh = mesh(Positions::F32(points), &[[0, 1, 2], [3, 5, 4]]).unwrap();
+    let radii = vec![0.1, 0.2, 0.3, 0.25, 0.125, 0.4];
+    let (welded, merged) = Body::deformable(mesh.clone()).with_thickness(radii.clone()).weld();
+    let Thickness::Each(own) = welded.thickness() else { panic!("{:?}", welded.thickness()) };
+    assert_eq!((merged, &own[..3], own[5]), (2, &[0.1, 0.25, 0.3][..], 0.4));
+    let (same, _) = Body::deformable(mesh).with_thickness(0.5).weld();
+    assert_eq!(*same.thickness(), Thickness::Same(0.5));
 }

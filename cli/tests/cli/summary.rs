@@ -2,8 +2,10 @@
 
 use super::{SCENE, ok, refused, summary};
 
-const KEYS: [&str; 18] = [
+const KEYS: [&str; 20] = [
     "triangles",
+    "edges",
+    "points",
     "vertices",
     "frames",
     "query",
