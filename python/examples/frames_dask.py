@@ -19,7 +19,7 @@ from sheets import fold
 import nearmiss
 
 
-def contacts(files):
+def contacts(files, tolerance):
     """Hash and number of the contacts of each step from one file to the next."""
     # A worker has a core. For one GPU a worker leave the device out.
     device = nearmiss.Device("cpu", threads=1)
@@ -32,7 +32,7 @@ def contacts(files):
             raise ValueError(
                 f"faces of {file} are not those of {files[0]}; give frames of one mesh"
             )
-        found = detector.step({0: (start, end)}, nearmiss.Continuous())
+        found = detector.step({0: (start, end)}, nearmiss.Continuous(tolerance=tolerance))
         answers.append((found.hash, len(found)))
         start = end
     return answers
@@ -81,10 +81,13 @@ def main():
             n_workers=2, threads_per_worker=1, dashboard_address=None
         )
         with Client(cluster) as client:
-            parts = client.gather(client.map(contacts, sliced(files, arguments.slices)))
+            # The default is that of a body's first frame, and each slice begins at another.
+            tolerance = nearmiss.Detector(nearmiss.Body(*nearmiss.read_mesh(files[0]))).tolerance
+            slices = sliced(files, arguments.slices)
+            parts = client.gather(client.map(contacts, slices, tolerance=tolerance))
             workers = len(client.scheduler_info()["workers"])
         answers = [answer for part in parts for answer in part]
-        wrong = differences(answers, contacts(files))
+        wrong = differences(answers, contacts(files, tolerance))
     rows = sum(count for _, count in answers)
     print(f"{len(answers)} steps, {rows} contacts, {len(parts)} slices on {workers} workers")
     print("\n".join(wrong) or "the answers are those of one process")

@@ -28,18 +28,22 @@ shift
 files=("$@")
 
 # A step needs the frame at its end too; a query at rest needs its frame alone.
-overlap=1
+overlap=1 tolerance=no
 for option in "${options[@]}"; do
     case $option in
+        --tolerance | --tolerance=*) tolerance=yes ;;
+        --weld) fail "--weld merges what coincides in all frames of a task; weld the files first" ;;
         --discrete | --near | --near=* | --distance | --body-pairs | --body-distances*) overlap=0 ;;
         --continuous | --earliest) overlap=1 ;;
     esac
 done
+# The default is that of the first frame, and each task begins at another.
+[ $overlap = 0 ] || [ $tolerance = yes ] || fail "steps need --tolerance L; detect --json prints the default"
 steps=$((${#files[@]} - overlap))
 [ "$task" -lt "$tasks" ] || fail "numbers of tasks must be below $tasks, got $task; see --array"
-# Three files are a film, two are one step.
-[ $((steps / tasks + overlap)) -ge 3 ] ||
-    fail "${#files[@]} files are too few for $tasks tasks; use at most $((steps / (3 - overlap)))"
+# Two steps are a film, and two frames at rest.
+[ $((steps / tasks)) -ge 2 ] ||
+    fail "${#files[@]} files are too few for $tasks tasks; use at most $((steps / 2))"
 first=$((task * steps / tasks))
 end=$(((task + 1) * steps / tasks))
 

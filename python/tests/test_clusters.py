@@ -72,7 +72,7 @@ def test_frames_of_another_mesh_are_refused(tmp_path):
     lines = Path(files[1]).read_text(encoding="utf-8").splitlines()
     Path(files[1]).write_text("\n".join(lines[:-1]), encoding="utf-8")
     with pytest.raises(ValueError, match="give frames of one mesh"):
-        frames_dask.contacts(files)
+        frames_dask.contacts(files, 1e-6)
 
 
 # Ray.
@@ -106,9 +106,12 @@ def test_environments_that_differ_are_noticed():
 # Slurm.
 
 
+TOLERANCE = ["--tolerance", "1e-6"]
+
+
 @pytest.fixture(scope="module")
 def film(tmp_path_factory):
-    """Ten frames of a sheet that folds."""
+    """Ten frames of a sheet that folds, and grows: the default tolerance of each task is another."""
     from sheets import fold
 
     folder = tmp_path_factory.mktemp("film with spaces")
@@ -117,7 +120,7 @@ def film(tmp_path_factory):
     for frame in range(10):
         files.append(folder / f"sheet.{1001 + frame}.obj")
         with open(files[-1], "w", encoding="utf-8") as rows:
-            np.savetxt(rows, flat + frame / 9 * (folded - flat), "v %.17g %.17g %.17g")
+            np.savetxt(rows, (1 + frame) * (flat + frame / 9 * (folded - flat)), "v %.17g %.17g %.17g")
             np.savetxt(rows, faces + 1, "f %d %d %d")
     return files
 
@@ -136,9 +139,9 @@ def merge(folder, steps):
 @pytest.mark.parametrize(
     ("options", "steps"),
     [
-        ([], 9),
-        (["--continuous", "--min-separation", "0.001"], 9),
-        (["--earliest"], 9),
+        (TOLERANCE, 9),
+        (["--continuous", "--min-separation", "0.001", *TOLERANCE], 9),
+        (["--earliest", "--tolerance=1e-6"], 9),
         (["--discrete", "--adjacent"], 10),
         (["--near", "0.01"], 10),
     ],
@@ -160,21 +163,21 @@ def test_rows_of_slurm_tasks_are_those_of_one_run(tmp_path, film, options, steps
 def test_parts_that_are_missing_or_overlap_are_named(tmp_path, film):
     parts = tmp_path / "parts"
     for number in range(3):
-        assert task(number, 3, parts, [], film)[0] == 0
+        assert task(number, 3, parts, TOLERANCE, film)[0] == 0
     assert "steps 9 to 10 are missing" in merge(parts, 11)[2]
     assert "STEPS must be 9 as in" in merge(parts, 8)[2]
     for steps in (0, -1, "9 9", "x"):
         assert f"STEPS must be a number of at least 1, got {steps}" in merge(parts, steps)[2]
     (parts / "00000003-00000006.csv").rename(tmp_path / "kept.csv")
     assert "steps 3 to 5 are missing" in merge(parts, 9)[2]
-    assert task(0, 2, parts, [], film)[0] == 0
+    assert task(0, 2, parts, TOLERANCE, film)[0] == 0
     assert "overlaps another part" in merge(parts, 9)[2]
     (tmp_path / "a-b.csv").touch()
     assert "a-b.csv is no part" in merge(tmp_path, 9)[2]
     assert "steps 0 to 8 are missing" in merge(tmp_path / "none", 9)[2]
     # A task that fails leaves no part.
     broken = [*film[:2], tmp_path / "none.obj", *film[3:]]
-    status, _, errors = task(0, 3, tmp_path / "broken", [], broken)
+    status, _, errors = task(0, 3, tmp_path / "broken", TOLERANCE, broken)
     assert status == 3 and "none.obj" in errors
     assert not list((tmp_path / "broken").glob("*.csv"))
 
@@ -182,9 +185,12 @@ def test_parts_that_are_missing_or_overlap_are_named(tmp_path, film):
 @needs_program
 def test_arguments_that_do_not_fit_are_refused(tmp_path, film):
     for number, tasks, options, message in [
-        (0, 5, [], "10 files are too few for 5 tasks; use at most 4"),
-        (0, 4, ["--discrete"], "10 files are too few for 4 tasks; use at most 3"),
-        (3, 3, [], "numbers of tasks must be below 3, got 3"),
+        (0, 5, TOLERANCE, "10 files are too few for 5 tasks; use at most 4"),
+        (0, 6, ["--discrete"], "10 files are too few for 6 tasks; use at most 5"),
+        (3, 3, TOLERANCE, "numbers of tasks must be below 3, got 3"),
+        # What is of all frames of a run would be of those of a task.
+        (0, 3, [], "steps need --tolerance L"),
+        (0, 3, ["--discrete", "--weld"], "weld the files first"),
     ]:
         status, _, errors = task(number, tasks, tmp_path / "parts", options, film)
         assert status == 2 and message in errors
