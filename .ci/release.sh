@@ -2,8 +2,9 @@
 # Makes all that a release is, and uploads nothing: `.ci/release.sh OUT`. It ends with the commands that would.
 #
 #   OUT/crates      the four packages of the library, as crates.io takes them
-#   OUT/wheels      Python's, for Linux on x86-64 and aarch64, glibc 2.17 and later, each with its bill of materials inside
-#   OUT/archives    the program with its manual pages and completions, and the C interface, for both machines
+#   OUT/wheels      Python's, for Linux on x86-64 and aarch64, glibc 2.17 and later, and for Windows on x86-64, each with its
+#                   bill of materials inside
+#   OUT/archives    the program with its manual pages and completions, and the C interface, for the same three
 #   OUT/wasm        the program in WebAssembly, and the page that runs it in a browser
 #   OUT/*.json      the bill of materials of each package (CycloneDX), OUT/SHA256SUMS of everything
 #
@@ -14,7 +15,8 @@
 # - Wheels and archives hold the kernels' machine code beside the PTX (.ci/cubins.sh). Crates do not: crates.io takes 10 MB.
 #   Each kernel's code is judged before it is packed (.ci/lanes.py).
 # - Packed files have run: the wheels in empty environments with the READMEs' lines, the C examples, the program, whose answers are the same
-#   bytes for both machines. aarch64 runs under QEMU (.ci/aarch64.sh).
+#   bytes for both machines. aarch64 runs under QEMU (.ci/aarch64.sh), Windows under Wine (.ci/windows.sh).
+# - What is linked for macOS has never run, so it is no part of a release.
 # - The public interface is compared with that of the newest tag `v*` by cargo-semver-checks; where there is no tag there is nothing to compare.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -80,7 +82,6 @@ echo "=== wheels"
 for target in $intel $arm; do
     maturin build --locked --release --zig --target "$target" --compatibility manylinux2014 --manifest-path python/Cargo.toml --out "$out/wheels"
 done
-twine check --strict "$out"/wheels/*.whl
 python3 -m venv "$work/user"
 "$work/user/bin/pip" -q install "$out"/wheels/nearmiss-*x86_64.whl
 # There pip is none: a wheel is an archive of what it installs.
@@ -88,10 +89,6 @@ python3 -m zipfile -e "$out"/wheels/nearmiss-*aarch64.whl "$work/site"
 for page in "$PWD/README.md" "$PWD/python/README.md"; do
     "$work/user/bin/python" .ci/python_blocks.py "$page"
     PYTHONPATH=$work/site "$work/aarch64/run" python3 "$PWD/.ci/python_blocks.py" "$page"
-done
-for wheel in "$out"/wheels/*.whl; do
-    # The whole list is read: a pipe that closes early is an error too.
-    python3 -m zipfile -l "$wheel" | grep 'sboms/.*cyclonedx.json' >/dev/null || { echo "release: $wheel has no bill of materials" >&2; exit 1; }
 done
 
 echo "=== program and C interface"
@@ -140,6 +137,16 @@ done
 
 echo "=== WebAssembly"
 NEARMISS=$nearmiss .ci/wasm.sh "$out/wasm"
+
+echo "=== Windows"
+NEARMISS=$nearmiss .ci/windows.sh "$work/windows" release
+mv "$work"/windows/*.whl "$out/wheels/"
+mv "$work"/windows/*.zip "$out/archives/"
+twine check --strict "$out"/wheels/*.whl
+for wheel in "$out"/wheels/*.whl; do
+    # The whole list is read: a pipe that closes early is an error too.
+    python3 -m zipfile -l "$wheel" | grep 'sboms/.*cyclonedx.json' >/dev/null || { echo "release: $wheel has no bill of materials" >&2; exit 1; }
+done
 
 echo "=== bills of materials"
 tool cargo-cyclonedx

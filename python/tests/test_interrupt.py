@@ -19,6 +19,14 @@ LONG = np.tile(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32), (3000, 1
 SOON = 2.0
 
 
+@pytest.fixture(autouse=True)
+def heard():
+    """Python hears SIGINT. Who runs in the background of a shell ignores it, and would wait for ever."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 def interrupted(call):
     """Calls until a SIGINT ends it; seconds since the signal."""
     sent = []
