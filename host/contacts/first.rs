@@ -66,7 +66,8 @@ impl<T: First> Answer<T> {
         };
         let query = earliest.contacts().into();
         let Some(toi) = self.rows.toi() else {
-            return Ok(self.with(Vec::new(), Contacts::none(query)));
+            let (stats, caveats) = (self.stats.clone(), self.caveats.clone());
+            return Ok(self.with(Vec::new(), Contacts { stats, caveats, ..Contacts::none(query) }));
         };
         let all = ask(&earliest.contacts_until(toi).into())?;
         let first: Vec<Contact> = all.contacts().iter().filter(|row| row.toi == toi).copied().collect();

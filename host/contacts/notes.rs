@@ -2,8 +2,9 @@
 
 use super::{Contacts, Rows};
 use crate::query::Query;
-use crate::scene::{Body, BodyKind};
+use crate::scene::{Body, BodyKind, CollisionFilter};
 use crate::words::counted;
+use std::collections::HashMap;
 use std::fmt;
 
 /// Note with an answer. Its text is the same in every language:
@@ -20,7 +21,7 @@ pub enum Note {
     OneFrame,
     /// A query in motion of bodies with equal start and end.
     SameFrames,
-    /// A distance query of bodies of which no two may meet.
+    /// A query of pairs of bodies, of bodies of which no two may meet.
     NoTwoBodies,
     /// Triangle pairs that share a point at the start of the step.
     StartsCrossing {
@@ -45,7 +46,11 @@ impl Note {
     #[doc(hidden)]
     pub fn of(bodies: &[Body], query: &Query, contacts: &Contacts) -> Vec<Note> {
         let rests = || (!query.kind().is_at_rest()).then(|| resting(bodies)).flatten();
-        let apart = contacts.rows == Rows::Distance(None);
+        let apart = match &contacts.rows {
+            Rows::Distance(nearest) => nearest.is_none(),
+            Rows::BodyPairs(_) | Rows::BodyDistances(_) => contacts.is_empty() && !any_two_meet(bodies),
+            Rows::Pairs(_) | Rows::Contacts(_) | Rows::Earliest(_) | Rows::Near(_) => false,
+        };
         let start = match contacts.starts_crossing {
             Some(pairs @ 1..) => Some(Note::StartsCrossing { pairs }),
             _ => (contacts.rows == Rows::Earliest(Some(0.0))).then_some(Note::ContactAtStart),
@@ -55,6 +60,26 @@ impl Note {
         let seams = (vertices > 0).then_some(Note::Coincident { vertices });
         rests().into_iter().chain(apart.then_some(Note::NoTwoBodies)).chain(start).chain(seams).collect()
     }
+}
+
+/// Whether kinds and filters let any two bodies meet. Cost: linear for few different filters in an
+/// environment.
+fn any_two_meet(bodies: &[Body]) -> bool {
+    // Bodies that all others treat alike, and whether there are two of them.
+    let mut alike: HashMap<Option<u32>, HashMap<(CollisionFilter, bool), bool>> = HashMap::new();
+    for body in bodies.iter().filter(|body| !body.elements().is_empty()) {
+        let filter = CollisionFilter { self_collision: None, ..*body.filter() };
+        let own = alike.entry(filter.environment).or_default();
+        let key = (filter, body.kind() == BodyKind::Fixed);
+        own.entry(key).and_modify(|is_twice| *is_twice = true).or_insert(false);
+    }
+    let meet = |a: &(CollisionFilter, bool), b: &(CollisionFilter, bool)| !(a.1 && b.1) && a.0.allows(&b.0);
+    let everywhere = alike.get(&None);
+    alike.values().any(|own| {
+        let twice = own.iter().any(|(one, is_twice)| *is_twice && meet(one, one));
+        let others = || own.keys().chain(everywhere.into_iter().flat_map(HashMap::keys));
+        twice || own.keys().any(|one| others().any(|other| one != other && meet(one, other)))
+    })
 }
 
 /// Returns why nothing moves; `None` if something does. A device-resident body moves if it was

@@ -73,7 +73,7 @@ pub enum BodyKind {
 /// it if they are equal or one is `None`. Groups allow it if each body is in a group that the
 /// other's mask has. Deformable bodies are tested against themselves by default, rigid bodies if
 /// `self_collision` is true, fixed bodies never. [`Scene::leave_out`] leaves out pairs by a list.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CollisionFilter {
     /// Environment; `None` for a body that is in every one. Bodies of different environments never
     /// meet.

@@ -52,8 +52,7 @@ impl DetectArgs {
         }
         let query = self.of_kind(kind, solver);
         query.check()?;
-        let shown = if self.query.first_contacts { QueryKind::Continuous } else { kind };
-        self.places(shown, solver.is_certain())?;
+        self.places(self.shown(query).kind(), solver.is_certain())?;
         if self.query.adjacent && (solver != Solver::Exact || kind.is_of_bodies()) {
             let what = format!("--adjacent cannot be used with a {kind} query by {solver}");
             return refused(what, "use --discrete with the solver exact");
@@ -63,6 +62,11 @@ impl DetectArgs {
             return refused(what, "use --discrete with the solver exact");
         }
         Ok(query)
+    }
+
+    /// The query whose rows are shown: with `--first-contacts` a continuous one.
+    pub fn shown(&self, query: Query) -> Query {
+        if self.query.first_contacts { Query::continuous() } else { query }
     }
 
     /// The query of a kind.
@@ -131,8 +135,8 @@ impl DetectArgs {
         }
     }
 
-    /// The kind of query.
-    fn kind(&self, moving: bool) -> QueryKind {
+    /// The kind of query, of bodies that move or rest.
+    pub fn kind(&self, moving: bool) -> QueryKind {
         let query = &self.query;
         match (query.discrete, query.continuous, query.earliest) {
             _ if query.near.is_some() => QueryKind::Near,

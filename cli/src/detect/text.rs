@@ -13,8 +13,12 @@ use std::fmt::Write;
 /// The summary; `verbose` adds the table.
 pub fn human(told: &Report, contacts: &Contacts, verbose: bool) -> String {
     let summary = &told.summary;
-    let mut text =
-        format!("{}; {} ms, {:.1} MB\n", found(summary), digits(summary.ms.wall), summary.bytes as f64 / 1e6);
+    let mut text = format!(
+        "{}; {} ms, {:.1} MB\n",
+        found(summary, told.crossing),
+        digits(summary.ms.wall),
+        summary.bytes as f64 / 1e6
+    );
     text += &remarks(summary);
     if verbose {
         for (name, value) in table(summary, contacts) {
@@ -25,8 +29,9 @@ pub fn human(told: &Report, contacts: &Contacts, verbose: bool) -> String {
     text
 }
 
-/// The result: the line that everyone reads.
-pub fn found(summary: &Summary) -> String {
+/// The result: the line that everyone reads; with the triangle pairs that meet, where rows do not show
+/// them.
+pub fn found(summary: &Summary, crossing: Option<u64>) -> String {
     let first = || summary.earliest_toi.map_or(String::new(), |toi| format!(", first at t = {}", below(toi)));
     let mut text = match (summary.query, &summary.nearest) {
         (QueryKind::Distance, None) => "no distance".into(),
@@ -37,23 +42,29 @@ pub fn found(summary: &Summary) -> String {
         (QueryKind::Earliest, _) => summary
             .earliest_toi
             .map_or("no contact".into(), |toi| format!("first contact at t = {}", below(toi))),
-        (QueryKind::BodyPairs, _) => {
-            counted(summary.contacts as u64, "pair of bodies touches", "pairs of bodies touch")
-        }
-        (QueryKind::BodyDistances, _) => {
+        (kind, _) => {
             let within = summary.distance.map_or(String::new(), |distance| format!(" within {distance}"));
-            counted(summary.contacts as u64, "pair of bodies", "pairs of bodies") + &within
+            rows(kind, summary.contacts as u64) + &within + &first()
         }
-        (QueryKind::Near, _) => {
-            let within = summary.distance.map_or(String::new(), |distance| format!(" within {distance}"));
-            counted(summary.contacts as u64, "pair", "pairs") + &within
-        }
-        _ => counted(summary.contacts as u64, "contact", "contacts") + &first(),
     };
     if summary.undecided > 0 {
         let _ = write!(text, ", {} undecided", summary.undecided);
     }
+    if let Some(pairs @ 1..) = crossing {
+        let _ = write!(text, ", {}", counted(pairs, "triangle pair meets", "triangle pairs meet"));
+    }
     text
+}
+
+/// So many rows, in words.
+pub fn rows(kind: QueryKind, count: u64) -> String {
+    let [one, many] = match kind {
+        QueryKind::BodyPairs => ["pair of bodies touches", "pairs of bodies touch"],
+        QueryKind::BodyDistances => ["pair of bodies", "pairs of bodies"],
+        QueryKind::Near => ["pair", "pairs"],
+        _ => ["contact", "contacts"],
+    };
+    counted(count, one, many)
 }
 
 /// Whether something meets: the answer has rows, or triangles share a point when the step starts. The
@@ -85,17 +96,23 @@ pub fn below(x: f64) -> String {
     }
 }
 
+/// How many triangles the bodies have, and how many edges and points of none, if any.
+pub fn elements(summary: &Summary) -> String {
+    let Summary { triangles, edges, points, .. } = summary;
+    let loose = [(*edges, "edge", "edges"), (*points, "point", "points")];
+    let loose = loose.into_iter().filter(|(count, ..)| *count > 0);
+    let all = [(*triangles, "triangle", "triangles")].into_iter().chain(loose);
+    let all: Vec<String> = all.map(|(count, one, many)| counted(count as u64, one, many)).collect();
+    all.join(", ")
+}
+
 /// Details, with their names.
 fn table(summary: &Summary, contacts: &Contacts) -> Vec<(&'static str, String)> {
     let (ms, stats) = (&summary.ms, &contacts.stats);
     let mut all = vec![
         (
             "scene",
-            format!(
-                "{}, {}",
-                counted(summary.triangles as u64, "triangle", "triangles"),
-                counted(summary.vertices as u64, "vertex", "vertices")
-            ),
+            format!("{}, {}", elements(summary), counted(summary.vertices as u64, "vertex", "vertices")),
         ),
         ("query", format!("{} by {} on {}", summary.query, summary.solver, summary.device)),
         (

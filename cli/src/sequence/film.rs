@@ -69,7 +69,7 @@ impl Film {
         let pairs = || self.numbers.windows(2).enumerate().map(|(at, pair)| (at, pair[0], pair[1]));
         let stride = pairs().filter(|(_, a, b)| a < b).map(|(_, a, b)| b - a).min().unwrap_or(1);
         let missing = |a: u64, b: u64| b.saturating_sub(a).saturating_sub(1) / stride;
-        let count: u64 = pairs().map(|(_, a, b)| missing(a, b)).sum();
+        let count = pairs().fold(0, |sum: u64, (_, a, b)| sum.saturating_add(missing(a, b)));
         let gap = pairs().find(|(_, a, b)| missing(*a, *b) > 0).map(|(at, a, b)| {
             let frames = counted(count, "frame is", "frames are");
             let files = [at, at + 1].map(|at| self.files[at].display());
@@ -180,6 +180,14 @@ mod tests {
             back.len() == 1 && back[0].starts_with("frame 2 (a.2.obj) comes after frame 10;"),
             "{back:?}"
         );
+    }
+
+    #[test]
+    fn numbers_of_any_size_are_counted() {
+        let most = u64::MAX;
+        let files = [0, most, 1, most - 1, 2, 3].map(|number| format!("a.{number}.obj"));
+        let notes = film(&files.each_ref().map(String::as_str)).notes();
+        assert!(notes.len() == 1 && notes[0].starts_with("frame 1 (a.1.obj) comes after frame"), "{notes:?}");
     }
 
     #[test]

@@ -4,6 +4,7 @@ use super::film::Moment;
 use crate::detect::text;
 use crate::report::Report;
 use nearmiss::contacts::Contacts;
+use nearmiss::query::QueryKind;
 use nearmiss::words::counted;
 use nearmiss_lab::tables::digits;
 
@@ -16,11 +17,8 @@ fn called(moment: &Moment, at_rest: bool) -> String {
 /// A step on a line, with its notes and caveats below.
 pub fn line(report: &Report, moment: &Moment, at_rest: bool, verbose: bool) -> String {
     let summary = &report.summary;
-    let crossing = report.crossing.filter(|pairs| *pairs > 0).map_or(String::new(), |pairs| {
-        format!(", {}", counted(pairs, "triangle pair meets", "triangle pairs meet"))
-    });
-    let found = text::found(summary);
-    let mut text = format!("{}: {found}{crossing}; {} ms", called(moment, at_rest), digits(summary.ms.wall));
+    let found = text::found(summary, report.crossing);
+    let mut text = format!("{}: {found}; {} ms", called(moment, at_rest), digits(summary.ms.wall));
     if verbose {
         text += &format!(", frame {:.3} ms, wall {:.3} ms", summary.ms.total, summary.ms.wall);
         text += &format!("; hash {}", summary.hash);
@@ -94,8 +92,8 @@ impl Total {
     }
 
     /// The sum, on a line.
-    pub fn text(&self, at_rest: bool) -> String {
-        let [name, names] = if at_rest { ["frame", "frames"] } else { ["step", "steps"] };
+    pub fn text(&self, kind: QueryKind) -> String {
+        let [name, names] = if kind.is_at_rest() { ["frame", "frames"] } else { ["step", "steps"] };
         let time = |toi| format!(" at t = {}", text::below(toi));
         let first = |(step, toi): (u64, Option<f64>)| {
             format!(", first in {name} {step}{}", toi.map_or(String::new(), time))
@@ -104,7 +102,7 @@ impl Total {
             Some((least, step)) => format!("least distance {least}, in {name} {step} of {}", self.steps),
             None => format!(
                 "{} in {}{}",
-                counted(self.contacts, "contact", "contacts"),
+                text::rows(kind, self.contacts),
                 counted(self.steps, name, names),
                 self.first.map_or(String::new(), first)
             ),

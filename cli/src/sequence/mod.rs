@@ -135,12 +135,14 @@ fn folder_of(scene: &Path) -> &Path {
 }
 
 impl Sequence {
-    /// A scene file, or more than two frames of a mesh, if the arguments name one.
+    /// A scene file, or frames of a mesh, if the arguments name one. Two frames are one step of a
+    /// query in motion, which is no sequence.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] for files that do not go together; those of reading.
     pub fn of(args: &DetectArgs, reader: &mut Reader) -> Result<Option<Sequence>, Error> {
         let own = [&args.meshes, &args.query.with];
+        let least = if args.kind(true).is_at_rest() { 2 } else { 3 };
         let scenes = own.iter().flat_map(|files| files.iter()).filter(|path| is_scene(path)).count();
         let mut all = match &own {
             [files, with] if scenes > 0 => match (&files[..], &with[..]) {
@@ -158,7 +160,7 @@ impl Sequence {
                     });
                 }
             },
-            _ if own.iter().all(|files| files.len() < 3) => return Ok(None),
+            _ if own.iter().all(|files| files.len() < least) => return Ok(None),
             _ => {
                 let told = own.iter().filter(|files| !files.is_empty()).map(|files| of_mesh(files, reader));
                 let mut told = told.collect::<Result<Vec<_>, _>>()?;
@@ -262,11 +264,11 @@ impl Sequence {
         scene.ids().zip(inputs).filter_map(|(id, input)| input.map(|input| (id, input))).collect()
     }
 
-    /// The corners of all triangles in all frames.
+    /// The corners of all elements in all frames.
     pub fn corners(&self) -> impl Iterator<Item = [f64; 3]> + Clone {
         self.bodies.iter().zip(&self.tracks).flat_map(|(body, track)| {
             (0..track.frames()).flat_map(move |frame| {
-                body.faces().iter().flatten().map(move |&vertex| track.point(body, frame, vertex))
+                body.elements().iter().flatten().map(move |&vertex| track.point(body, frame, vertex))
             })
         })
     }

@@ -4,7 +4,8 @@ use super::film::Moment;
 use super::lines::{Total, line, untested};
 use super::{Sequence, Walk, check_name};
 use crate::args::DetectArgs;
-use crate::detect::{Places, places, promise, shown};
+use crate::detect::text::elements;
+use crate::detect::{Places, crossing, places, promise, shown};
 use crate::output::{Stop, Target, print};
 use crate::paint::{self, Paint};
 use crate::report::{FileFaces, Format, Report};
@@ -162,7 +163,7 @@ impl Steps<'_> {
             let text = text.map_err(|e| Error::Bug { what: e.to_string() })?;
             print(&(text + "\n"))?;
         } else {
-            print(&self.total.text(at_rest))?;
+            print(&self.total.text(self.query.kind()))?;
         }
         Ok(match (self.total.is_partial(), self.args.out.fails(self.total.meets)) {
             (true, _) => ExitCode::from(PARTIAL),
@@ -181,7 +182,7 @@ impl Steps<'_> {
             let (geometry, paint) = (places.geometry.contacts(), Paint::of(self.args.out.heat));
             paint::write(target, &paint::paint(bodies, 0.0, (&found, geometry), paint)?)?;
         }
-        report.crossing = self.walk.crossing()?;
+        report.crossing = crossing(&mut self.walk.detector)?;
         self.put(out, &found, &report, &places).map_err(Stop::File)?;
         self.total.add(moment, &found, report.crossing);
         Ok(report)
@@ -211,7 +212,8 @@ impl Steps<'_> {
     fn begin(&self, out: &mut Out) -> Result<(), String> {
         match out {
             Out::Csv(csv, count) => {
-                let (moment, none) = (self.walk.all.film.moment(0), Contacts::none(self.query));
+                let (moment, none) =
+                    (self.walk.all.film.moment(0), Contacts::none(self.args.shown(self.query)));
                 let empty = Geometry::default();
                 let columns = self.columns(&moment, self.args.out.geometry.then_some(&empty));
                 *count = columns.head(csv, &none.rows)?;
@@ -274,7 +276,7 @@ impl Steps<'_> {
         format!(
             "{}, {}, {}, {}; {} query by {} on {}\n",
             counted(self.walk.detector.scene().ids().count() as u64, "body", "bodies"),
-            counted(summary.triangles as u64, "triangle", "triangles"),
+            elements(summary),
             counted(summary.vertices as u64, "vertex", "vertices"),
             counted(self.walk.all.frames as u64, "frame", "frames"),
             summary.query,

@@ -5,10 +5,9 @@ use crate::args::DetectArgs;
 use crate::progress::during;
 use nearmiss::contacts::Contacts;
 use nearmiss::error::Error;
-use nearmiss::query::{Discrete, Query, QueryKind};
+use nearmiss::query::Query;
 use nearmiss::scene::Scene;
 use nearmiss_lab::OneQuery;
-use std::ops::DerefMut;
 
 /// A detector, and the sequence that it goes through.
 pub struct Walk<'a> {
@@ -53,20 +52,6 @@ impl Walk<'_> {
                 self.detector.detect()
             }
             _ => self.detector.frame(&inputs),
-        }
-    }
-
-    /// How many triangle pairs share a point in this frame, for queries at rest whose rows do not
-    /// show it.
-    ///
-    /// # Errors
-    /// Those of the device.
-    pub fn crossing(&mut self) -> Result<Option<u64>, Error> {
-        match self.detector.query().kind() {
-            QueryKind::Near | QueryKind::Distance | QueryKind::BodyDistances => {
-                Ok(Some(self.detector.deref_mut().query(&Discrete::default())?.len() as u64))
-            }
-            _ => Ok(None),
         }
     }
 }

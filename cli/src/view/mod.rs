@@ -7,7 +7,7 @@ mod page;
 use crate::args::ViewArgs;
 use crate::args::view::check;
 use crate::detect::text::{found as line, remarks};
-use crate::detect::{Question, keeps, promise, question};
+use crate::detect::{Question, crossing, keeps, promise, question};
 use crate::output::{Stop, Target, print, say};
 use crate::paint::{self, GREY, Paint};
 use crate::picture::{body_colours, bounds};
@@ -171,7 +171,7 @@ impl<'a> View<'a> {
         let starts: Vec<u32> = paint::starts(bodies).into_iter().map(|(vertex, _)| vertex).collect();
         let rows = self.page.about.rows(found, &geometry, &starts);
         let lines = remarks(&summary);
-        let remarks = std::iter::once(line(&summary))
+        let remarks = std::iter::once(line(&summary, crossing(detector)?))
             .chain(lines.lines().map(|line| line.trim().to_owned()))
             .chain([format!("hash {}", summary.hash)]);
         let [starts, ends] = ends;

@@ -95,10 +95,12 @@ fn a_case_is_timed_stage_by_stage() {
         assert!(row[7] != "total" || low > 0.0, "{row:?}");
     }
     // The answers are those of `detect`.
-    for (question, option) in [("discrete", "--discrete"), ("continuous", "--continuous")] {
-        let [t0, t1] = &tiny.mesh;
-        let detect =
-            super::summary(&["detect", t0, t1, option, "--backend", "cpu", "--threads", "1", "--json"]);
+    let [t0, t1] = &tiny.mesh;
+    for (question, files) in [("discrete", &[t0][..]), ("continuous", &[t0, t1])] {
+        let files: Vec<&str> = files.iter().map(|file| file.as_str()).collect();
+        let detect = super::summary(
+            &[&["detect"], &files[..], &["--backend", "cpu", "--threads", "1", "--json"]].concat(),
+        );
         let row = rows.iter().find(|row| row[6] == question).expect("a row");
         assert_eq!(detect["hash"], row[15], "{question}");
         assert_eq!([&detect["candidates"], &detect["contacts"]].map(Value::to_string), row[12..14]);

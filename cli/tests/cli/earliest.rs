@@ -87,6 +87,19 @@ fn first_contacts_are_rows_of_all_contacts() {
     assert!(rows("first.vtp", &first).contains("<VTKFile"));
     let told = summary(&[&scene[..], &first, &["--json"]].concat());
     assert_eq!(told["contacts"], wanted.len() - 1);
+    // A film has the rows of each step, and those of a step without a contact.
+    let files = super::film::falling(&folder);
+    let film: Vec<&str> = std::iter::once("detect").chain(files.iter().map(String::as_str)).collect();
+    for more in [&[][..], &["--geometry"]] {
+        let file = folder.path("film.csv");
+        let text = ok(&[&film[..], &first, more, &["--out", &file]].concat());
+        assert!(text.contains("step 1001") && !text.contains("0 contacts; 0 ms"), "{text}");
+        let written = folder.read("film.csv");
+        assert!(written.starts_with("step,frame,file,kind,feature_a,"), "{written}");
+        let steps: Vec<&str> =
+            written.lines().skip(1).map(|row| row.split(',').nth(1).unwrap_or(row)).collect();
+        assert_eq!(steps, ["1002", "1002", "1003"], "{written}");
+    }
     let marked = folder.path("marked.ply");
     ok(&[&scene[..], &first, &["--out-mesh", &marked]].concat());
     for needs in [&["--out-mesh", &marked][..], &["--geometry", "--out", &marked.replace(".ply", ".csv")]] {

@@ -58,6 +58,24 @@ fn rows_and_lines_name_files_and_frames() {
 }
 
 #[test]
+fn two_frames_at_rest_are_a_film() {
+    let folder = Folder::new("film-two");
+    let files = falling(&folder);
+    let (free, crosses) = (&files[0], &files[2]);
+    for query in [&["--discrete"][..], &["--near", "0.1"], &["--distance"]] {
+        let args = [&["detect", free, crosses][..], query, &["--fail-on", "contacts"]].concat();
+        let done = run(&args);
+        assert_eq!(done.status.code(), Some(1), "{query:?}");
+        assert!(out(&done).contains("frame 1003"), "{}", out(&done));
+    }
+    assert_eq!(run(&["detect", free, free, "--discrete", "--fail-on", "contacts"]).status.code(), Some(0));
+    // In motion they are one step.
+    assert!(!ok(&["detect", free, crosses]).contains("step"));
+    let pairs = ok(&[&["detect", free, crosses][..], &["--near", "1"]].concat());
+    assert!(pairs.contains("pairs in 2 frames"), "{pairs}");
+}
+
+#[test]
 fn gaps_are_notes() {
     let folder = Folder::new("film-gaps");
     let mut files = falling(&folder);

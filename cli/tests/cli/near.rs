@@ -1,6 +1,6 @@
 //! `--near`: text, JSON, files.
 
-use super::{Folder, ok, run, summary};
+use super::{Folder, err, ok, run, summary};
 
 /// A rod over a triangle, and a point next to it.
 const MESH: &str = "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 1\nv 2 1 1\nf 1 2 3\nf 4 5 5\n";
@@ -45,6 +45,54 @@ fn near_features_are_told() {
     );
     // Faces of the file would not have the weights' corners.
     assert_eq!(run(&[&asked[..], &["--out", &csv, "--file-faces"]].concat()).status.code(), Some(2));
+}
+
+#[test]
+fn lines_and_points_of_a_file_are_threads_and_points() {
+    let folder = Folder::new("near-threads");
+    let vertices = "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 0.5\nv 1 1 3\nv 1 1.2 2\nv 1 1.4 2\n";
+    let mesh = folder.write("hair.obj", &format!("{vertices}p 6\nf 1 2 3\nl 4 5\np 7\n"));
+    let csv = folder.path("near.csv");
+    ok(&["detect", &mesh, "--backend", "cpu", "--near", "0.5", "--out", &csv]);
+    let rows = std::fs::read_to_string(&csv).expect("written");
+    let kinds: Vec<&str> = rows.lines().skip(1).map(|row| row.split(',').next().unwrap_or(row)).collect();
+    assert_eq!(kinds, ["vf", "ev", "ev", "vv"], "{rows}");
+    let text = ok(&["detect", &mesh, "--backend", "cpu", "--near", "0.5", "-v"]);
+    assert!(text.contains("1 triangle, 1 edge, 2 points, 7 vertices"), "{text}");
+    // Each row can be explained: the same distance, exactly.
+    for (pair, features) in [(["--ev", "0", "5"], "vertex 5 of"), (["--vv", "5", "6"], "vertex 6 of")] {
+        let text = ok(&[&["explain"], &pair[..], &[&mesh]].concat());
+        assert!(text.contains(features), "{text}");
+    }
+    let far = run(&["explain", "--ev", "9", "5", &mesh]);
+    assert!(err(&far).contains("edge 9"), "{}", err(&far));
+    // A frame of it has the same lines.
+    let other = folder.write("other.obj", &format!("{vertices}p 6\nf 1 2 3\nl 4 6\np 7\n"));
+    let refused = run(&["detect", &mesh, &other, "--backend", "cpu"]);
+    assert_eq!(refused.status.code(), Some(3));
+    assert!(err(&refused).contains("has other edges than the first frame"), "{}", err(&refused));
+}
+
+/// A face that is pierced in its middle has no features near: what crosses is named, too.
+#[test]
+fn what_crosses_is_named_with_what_is_near() {
+    let folder = Folder::new("near-pierced");
+    let wide = folder.write("wide.obj", "v -9 -9 0\nv 9 -9 0\nv 0 9 0\nf 1 2 3\n");
+    let thin = folder.write("thin.obj", "v 0 0 -9\nv 0 0 9\nv 0 0.1 9\nf 1 2 3\n");
+    let ask = ["detect", &wide, "--with", &thin, "--backend", "cpu", "--near", "0.5"];
+    let text = ok(&ask);
+    assert!(text.starts_with("0 pairs within 0.5, 1 triangle pair meets; "), "{text}");
+    assert_eq!(summary(&[&ask[..], &["--json"]].concat())["crossing"], 1);
+    assert_eq!(run(&[&ask[..], &["--fail-on", "contacts"]].concat()).status.code(), Some(1));
+    let apart = folder.write("apart.obj", "v 0 0 1\nv 0 0 9\nv 0 0.1 9\nf 1 2 3\n");
+    let ask = ["detect", &wide, "--with", &apart, "--near", "0.5", "--fail-on", "contacts"];
+    assert!(ok(&ask).starts_with("0 pairs within 0.5; "));
+    for query in [&["--body-pairs"][..], &["--body-distances", "1"]] {
+        let alone = ok(&[&["detect", &wide], query].concat());
+        assert!(alone.contains("no two bodies may meet"), "{alone}");
+        let two = ok(&[&["detect", &wide, "--with", &apart], query].concat());
+        assert!(!two.contains("no two bodies may meet"), "{two}");
+    }
 }
 
 #[test]
