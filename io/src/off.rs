@@ -85,6 +85,9 @@ fn counts(lines: &mut Lines<'_>) -> Result<[u64; 2], Problem> {
         return Err(wrong(what, "give an OFF file of three dimensions, in text"));
     }
     let own: Vec<&[u8]> = all.collect();
+    if own.first() == Some(&&b"BINARY"[..]) {
+        return Err(wrong(format!("line {line}: is a binary OFF file"), "give an OFF file in text"));
+    }
     let (line, counts) = match own.is_empty() {
         true => lines.next().map_or((line, Vec::new()), |(line, text)| (line, words(text).collect())),
         false => (line, own),

@@ -241,6 +241,7 @@ fn broken_files_are_refused_by_their_reason() {
     for (off, said) in [
         ("4OFF 1 1 0\n", "line 1: begins with \"4OFF\""),
         ("OFF\nmany 2\n", "line 2: has \"many 2\" for the numbers"),
+        ("OFF BINARY\n\0\0\0\x01", "is a binary OFF file; give an OFF file in text"),
         ("OFF 99999999999 1 0\n", "99999999999 vertices"),
         ("OFF 2 1 0\n0 0 0\n", "ends after 1 of 2 vertices"),
         ("OFF 1 1 0\n0 0 y\n", "line 2: z is \"y\""),

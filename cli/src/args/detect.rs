@@ -13,8 +13,9 @@ pub struct DetectArgs {
     /// Read a mesh (such as .ply), its frames in order, or a scene (.toml)
     ///
     /// Formats are .ply, .obj, .stl, .off, .gltf and .glb. The file `-` is standard input.
-    /// Two files are the two ends of a step. Three or more are frames of one mesh, tested one after
-    /// the other. A scene names its own meshes. A file may be compressed (.gz).
+    /// Two files are the two ends of a step, or two frames for a query at rest. Three or more are
+    /// frames of one mesh, tested one after the other. A scene names its own meshes. A file may be
+    /// compressed (.gz).
     #[arg(required_unless_present = "scene", num_args = 1.., value_name = "MESH")]
     pub meshes: Vec<PathBuf>,
     #[command(flatten, next_help_heading = QUERY)]

@@ -47,8 +47,9 @@ pub fn view(args: &ViewArgs) -> Result<ExitCode, Error> {
     let Question { scene, query, sequence, notes, .. } = question(&args.detect)?;
     notes.iter().for_each(|note| say(note));
     promise(&query);
-    let triangles: usize = scene.bodies().iter().map(Body::element_count).sum();
-    memory::require("the page", triangles as u64 * OF_A_TRIANGLE)?;
+    let [triangles, elements] = [Body::face_count, Body::element_count]
+        .map(|count| scene.bodies().iter().map(count).sum::<usize>() as u64);
+    memory::require("the page", elements * OF_A_TRIANGLE)?;
     let about = about(args, (&scene, &query), sequence.as_ref())?;
     let (mut steps, name) = (0, out.display().to_string());
     let mut code = ExitCode::SUCCESS;
@@ -84,7 +85,11 @@ pub fn view(args: &ViewArgs) -> Result<ExitCode, Error> {
     })?;
     let of = if at_rest { ["frame", "frames"] } else { ["step", "steps"] };
     let moments = counted(steps as u64, of[0], of[1]);
-    let triangles = counted(triangles as u64, "triangle", "triangles");
+    let loose = match elements - triangles {
+        0 => String::new(),
+        loose => format!(", {}", counted(loose, "edge or point", "edges and points")),
+    };
+    let triangles = counted(triangles, "triangle", "triangles") + &loose;
     let rows = counted(written.rows, "row", "rows");
     let megabytes = written.bytes as f64 / 1e6;
     print(&format!("{name}: {moments}, {triangles}, {rows}, {megabytes:.1} MB\n"))?;

@@ -241,6 +241,28 @@ fn a_body_that_turns_has_its_quarters() {
     assert_eq!(rest.head["moments"][0]["turns"], serde_json::json!([]));
 }
 
+/// A film of threads alone is as large as they are.
+#[test]
+fn threads_are_in_the_cube_of_the_page() {
+    let folder = Folder::new("view-threads");
+    let frames = [0.0, 1.0, 2.0].map(|y| {
+        let text = format!("v 100 {y} 0\nv 140 {y} 0\nv 120 1 -20\nv 120 1 20\nl 1 2\nl 3 4\np 1\n");
+        folder.write(&format!("hair.{}.obj", 1 + y as u32), &text)
+    });
+    let files: Vec<&str> = frames.iter().map(String::as_str).collect();
+    let page = Page::written(&folder, &[&files[..], &["--near", "0.1"]].concat());
+    let places = page.places(&page.head["moments"][0]["starts"][0]);
+    let widest = |axis: usize| {
+        let all = || places.iter().skip(axis).step_by(3);
+        all().fold(f32::MIN, |most, &x| most.max(x)) - all().fold(f32::MAX, |least, &x| least.min(x))
+    };
+    // Their longest side is that of the cube; none is cut off.
+    assert!((widest(0) - 1.0).abs() < 1e-6 && (widest(2) - 1.0).abs() < 1e-6, "{places:?}");
+    let out = folder.path("b.html");
+    let printed = ok(&[&["view"], &files[..], &["--near", "0.1", "--out", &out]].concat());
+    assert!(printed.contains("3 frames, 0 triangles, 2 edges and points"), "{printed}");
+}
+
 #[test]
 fn the_line_has_the_size_and_bad_arguments_are_refused() {
     let folder = Folder::new("view-line");
