@@ -193,6 +193,7 @@ impl<W: Watch> Block for Emulated<W> {
                 count += 1;
             }
         });
+        rows.zero_behind(count as usize);
         let mut results = PerLane::new([0; WIDTH], (count as usize).div_ceil(WIDTH));
         rows.at_once(map, results.values());
         let results = results.values().as_flattened();

@@ -36,6 +36,16 @@ impl<'a, M: RowMap> Rows<'a, M> {
         }
     }
 
+    /// Zeroes what is behind the first rows in their strip: it is computed with, and its numbers are of
+    /// an earlier call.
+    pub fn zero_behind(&mut self, count: usize) {
+        let lane = count % WIDTH;
+        if lane > 0 {
+            let columns = &mut self.columns[count / WIDTH * Self::NUMBERS..][..Self::NUMBERS];
+            columns.iter_mut().for_each(|column| column[lane..].fill(M::Number::zeroed()));
+        }
+    }
+
     /// A row.
     pub fn get(&self, i: usize) -> M::Row {
         row::<M>(&self.columns[i / WIDTH * Self::NUMBERS..], i % WIDTH)
@@ -146,6 +156,32 @@ mod tests {
     /// One bit pattern for every NaN: results may have any.
     fn canonical(bits: u32) -> u32 {
         if f32::from_bits(bits).is_nan() { f32::NAN.to_bits() } else { bits }
+    }
+
+    /// The bits of a number, and one: too much for a NaN of all ones.
+    struct Next;
+
+    impl RowMap for Next {
+        type Number = f32;
+        type Row = [f32; 1];
+        #[inline(always)]
+        fn at_once(&self, [a]: [f32; 1]) -> u32 {
+            a.to_bits() + 1
+        }
+    }
+
+    #[test]
+    fn numbers_of_earlier_rows_are_not_computed_with() {
+        for count in [1, WIDTH - 1, WIDTH, WIDTH + 3] {
+            let mut memory = vec![u64::MAX; 4 * WIDTH];
+            let mut columns = Rows::<Next>::new(2 * WIDTH, &mut memory);
+            (0..count).for_each(|i| columns.set(i, &[i as f32]));
+            columns.zero_behind(count);
+            let mut results = vec![[0; WIDTH]; count.div_ceil(WIDTH)];
+            columns.at_once(&Next, &mut results);
+            let expected = (0..count).map(|i| (i as f32).to_bits() + 1);
+            assert!(expected.eq(results.as_flattened()[..count].iter().copied()), "{count}");
+        }
     }
 
     #[test]

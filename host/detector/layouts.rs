@@ -78,9 +78,4 @@ impl Layouts {
     pub fn meeting(&self) -> Option<&Arc<Layout>> {
         self.0.iter().map(|(_, layout)| layout).find(|layout| layout.may_meet())
     }
-
-    /// Whether no layout was made, or something may meet by one of them.
-    pub fn may_meet(&self) -> bool {
-        self.0.is_empty() || self.meeting().is_some()
-    }
 }

@@ -117,6 +117,7 @@ impl Detector {
             self.try_submission(&given, queries)
         })?;
         self.placed.submit(motions, queries);
+        self.engine.alone = self.engine.pipeline.is_none().then(|| motions.to_vec());
         Ok(())
     }
 
@@ -155,7 +156,7 @@ impl Detector {
     /// is true after [`Detector::prepare`], until a call changes the detector.
     pub fn is_prepared(&self) -> bool {
         let pipeline = self.engine.pipeline.as_ref();
-        pipeline.map_or_else(|| !self.may_meet(), |pipeline| pipeline.is_prepared())
+        pipeline.map_or_else(|| self.engine.alone.is_some(), |pipeline| pipeline.is_prepared())
     }
 
     /// Submits the prepared queries to the device's stream. It only launches kernels, which read
@@ -173,20 +174,31 @@ impl Detector {
         start_threads()?;
         self.engine.answered = None;
         self.read_again(true);
-        let is_empty = self.is_prepared();
         let submitted = match &mut self.engine.pipeline {
             Some(pipeline) => pipeline.submit(),
-            None if is_empty => Ok(()),
-            None => Err(not_prepared()),
+            None => self.place_alone(),
         };
         self.ended(submitted)
+    }
+
+    /// Places bodies of which none may meet, without a pipeline: the host reads their memory if it
+    /// can. On a GPU only the caller knows where they are: a later edit needs their positions again.
+    fn place_alone(&mut self) -> Result<(), Error> {
+        let motions = self.engine.alone.clone().ok_or_else(not_prepared)?;
+        if !self.device.is_gpu() {
+            let given: Vec<(BodyId, Motion)> =
+                motions.iter().map(|&(id, motion)| (id, Motion::OnDevice(motion))).collect();
+            self.apply(&given, None)?;
+        }
+        self.engine.alone = Some(motions);
+        Ok(())
     }
 
     /// Ends the preparation, if there is one: no later call reads the arrays that it named. Work that
     /// was submitted before may still read them. Bodies are where the last submission placed them.
     pub fn unprepare(&mut self) {
         self.read_again(false);
-        self.engine.answered = None;
+        (self.engine.answered, self.engine.alone) = (None, None);
         if let Some(pipeline) = self.engine.pipeline.as_mut().filter(|pipeline| pipeline.is_prepared()) {
             // Nothing moves. An error of the device comes again with the next call, and the
             // preparation has ended all the same.
@@ -240,10 +252,6 @@ impl Detector {
             _ => self.answer(&question, start),
         }
     }
-
-    fn may_meet(&self) -> bool {
-        self.engine.layouts.may_meet()
-    }
 }
 
 #[cfg(test)]
@@ -251,7 +259,7 @@ mod tests {
     use super::*;
     use crate::device::Backend;
     use crate::samples::level;
-    use crate::scene::{DeviceRows, Number};
+    use crate::scene::{CollisionFilter, DeviceRows, Number};
     use crate::{Body, Device, Near};
     use std::cell::Cell;
 
@@ -276,6 +284,38 @@ mod tests {
         let error = error.expect_err("no round was whole");
         assert!(matches!(error, Error::InvalidArgument { .. }) && rounds == PREPARING_ROUNDS);
         assert!(error.to_string().contains("64 rounds of `prepare`"), "{error}");
+    }
+
+    /// A submission moves bodies of which none may meet: those that come later meet them there.
+    #[test]
+    fn bodies_that_meet_none_are_where_they_were_submitted() {
+        let alone = |z| Body::deformable(level(z)).with_filter(CollisionFilter::without_self_collision());
+        let device = Device::open(Backend::Cpu, Some(1)).expect("a thread");
+        let mut detector = Detector::new(device, alone(0.0)).expect("a detector");
+        let id = detector.scene().ids().next().expect("a body");
+        let array: Vec<Cell<f32>> =
+            level(0.0).positions().to_f64().iter().flatten().map(|&x| Cell::new(x as f32)).collect();
+        // SAFETY: three vertices, which this test alone writes, between calls.
+        let rows = unsafe { DeviceRows::new(array.as_ptr() as u64, 3, 12, Number::F32) }.expect("rows");
+        let (near, motion) = (Near::within(1.0), DeviceMotion::Positions(rows));
+        let set = |height: f32| array.iter().skip(2).step_by(3).for_each(|z| z.set(height));
+        assert!(!detector.is_prepared() && detector.submit().is_err());
+        detector.prepare(&[(id, motion)], &[near.into()]).expect("prepared");
+        for height in [5.0, 9.0] {
+            set(height);
+            detector.submit().expect("submitted");
+            assert!(detector.is_prepared() && detector.collect(&near).expect("an answer").is_empty());
+        }
+        // Positions are checked when they are read.
+        set(f32::NAN);
+        assert!(matches!(detector.submit(), Err(Error::Input { .. })));
+        detector.prepare(&[(id, motion)], &[near.into()]).expect_err("they still are wrong");
+        set(9.0);
+        detector.prepare(&[(id, motion)], &[near.into()]).expect("prepared");
+        detector.submit().expect("submitted");
+        detector.add(Body::fixed(level(9.5))).expect("a body");
+        assert!(!detector.is_prepared() && detector.submit().is_err());
+        assert!(!detector.query(&near).expect("an answer").is_empty());
     }
 
     #[test]
