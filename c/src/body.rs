@@ -139,12 +139,11 @@ impl NearmissBody {
         // SAFETY: the caller's promise, of all six.
         let (name, positions, corners, radii, edges, points) = unsafe {
             let name = text(self.name).unwrap_or_else(|| "a body".to_owned());
-            let count = self.triangle_count.saturating_mul(3);
             let positions = self.positions.points(&format!("positions of {name}"))?;
-            let corners = items(self.triangles, count, &format!("triangles of {name}"))?;
+            let corners: &[[u32; 3]] =
+                items(self.triangles.cast(), self.triangle_count, &format!("triangles of {name}"))?;
             let radii = items(self.radii, self.radius_count, &format!("radii of {name}"))?;
-            let ends = self.edge_count.saturating_mul(2);
-            let edges = items(self.edges, ends, &format!("edges of {name}"))?;
+            let edges: &[[u32; 2]] = items(self.edges.cast(), self.edge_count, &format!("edges of {name}"))?;
             let points = items(self.points, self.point_count, &format!("points of {name}"))?;
             (name, positions, corners, radii, edges, points)
         };
@@ -172,8 +171,8 @@ impl NearmissBody {
         let filter = self.filter(&name)?;
         let bytes = size_of_val(corners) + size_of_val(edges) + size_of_val(points);
         nearmiss::memory::require("triangles, edges and points", bytes as u64)?;
-        let mesh = Mesh::new(name, positions.positions()?, corners.as_chunks::<3>().0.to_vec())?;
-        let mesh = mesh.with_edges(edges.as_chunks::<2>().0.to_vec())?.with_points(points.to_vec())?;
+        let mesh = Mesh::new(name, positions.positions()?, corners.to_vec())?;
+        let mesh = mesh.with_edges(edges.to_vec())?.with_points(points.to_vec())?;
         let body = make(mesh).with_filter(filter);
         let body = body.with_thickness(thickness(radii)?);
         body.validate()?;

@@ -1,7 +1,7 @@
 //! Pairs of features that are left out.
 
 use crate::detector::NearmissDetector;
-use crate::error::{NearmissCode, NearmissError, given};
+use crate::error::{NearmissCode, NearmissError, given, refused};
 use crate::rows::{NearmissNumber, NearmissRows, items};
 use nearmiss::Error;
 use nearmiss::scene::{BodyId, Exclusions, RestShape, Scene};
@@ -52,11 +52,18 @@ impl NearmissExclusions {
     /// # Safety
     /// Its pointers point to what the header says.
     unsafe fn of_body(&self, scene: &Scene, id: BodyId) -> Result<Exclusions, Error> {
+        if self.pad != 0 {
+            return Err(refused(format!("pad of the exclusions is {}", self.pad), "keep it 0"));
+        }
+        let has_rest = !self.rest.data.is_null() || self.rest.count > 0;
+        if has_rest && self.within == 0.0 {
+            return Err(refused("rest shape without a distance", "set within too, or leave rest empty"));
+        }
         // SAFETY: the caller's promise.
         let faces = unsafe { items(self.faces, self.face_count, "faces") }?.to_vec();
         let positions = if self.within == 0.0 {
             None
-        } else if self.rest.data.is_null() {
+        } else if !has_rest {
             scene.get(id).map(|body| body.positions_t0().clone())
         } else {
             // SAFETY: the caller's promise.

@@ -204,7 +204,14 @@ impl NearmissMotion {
         let is_step = self.kind == 3 && !on_device;
         let is_turning = self.kind == 4;
         let is_given = |numbers: &[f64; 3]| *numbers != [0.0; 3];
+        // One pose for a pose or a turn, two for a step, none for positions and on a device.
+        let read = match self.kind {
+            2 | 4 if !on_device => 1,
+            3 if !on_device => 2,
+            _ => 0,
+        };
         let unread = [
+            ("poses", self.poses[read..].iter().any(|pose| *pose != UNMOVED)),
             ("straight", is_straight && !is_step),
             ("pivot", is_given(&self.pivot) && !(is_step && !is_straight || is_turning)),
             ("turn", is_given(&self.turn) && !is_turning),

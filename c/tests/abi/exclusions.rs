@@ -64,6 +64,10 @@ fn features_are_left_out_as_by_the_library() {
         (3, none, "there is no body 3"),
         (0, NearmissExclusions { within: f64::NAN, ..none }, "finite and at least 0, got NaN"),
         (0, NearmissExclusions { face_count: 1, ..none }, "faces is NULL"),
+        // Nothing is ignored.
+        (0, NearmissExclusions { pad: 7, ..none }, "pad of the exclusions is 7"),
+        (0, NearmissExclusions { rest: rows_of(&cloth), ..none }, "rest shape without a distance"),
+        (0, shape(NearmissRows { count: 9, ..none.rest }), "data of rest is NULL"),
     ] {
         // SAFETY: what they point to is there; so below.
         let error = told(|e| unsafe { nearmiss_detector_exclude(Some(&mut own), body, Some(&given), e) });
