@@ -145,7 +145,7 @@ impl sealed::Rows for Rows {
                 ("a body-distances", "read `points` and `weights` of this answer's nearest triangles")
             }
         };
-        let what = format!("geometry of the answer to {query} query, which has no pairs of features");
+        let what = format!("answer to {query} query has no pairs of features or triangles");
         Err(Error::InvalidArgument { what, advice: advice.into() })
     }
 }

@@ -11,7 +11,6 @@ use crate::on_device::{DeviceAnswer, Owner};
 use crate::pairs::Curves;
 use crate::pose::Pose;
 use crate::query::{Query, queries_of};
-use crate::rows::TrianglePairs;
 use crate::scene::Body;
 use crate::thickness::thickness_of;
 use crate::turns::python;
@@ -129,8 +128,8 @@ impl Detector {
     /// coordinates. A curve ends at a border, at a seam of equal vertices, and along an edge on a face. It
     /// also ends in a point of three surfaces.
     /// Raises InvalidArgumentError for other answers.
-    fn curves(&self, py: Python<'_>, answer: PyRef<'_, TrianglePairs>) -> PyResult<Curves> {
-        self.work_of(py, answer.as_super(), |own, found| Curves::of(&own.geometry(found)?, own.scene()))
+    fn curves(&self, py: Python<'_>, answer: &Answer) -> PyResult<Curves> {
+        self.work_of(py, answer, |own, found| Curves::of(&own.geometry(found)?, own.scene()))
     }
 
     /// Return all figures of an answer as a dictionary, as the program prints them with --json.

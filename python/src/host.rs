@@ -69,7 +69,13 @@ pub fn rows<'py, T: Element + Copy + bytemuck::Pod, const N: usize>(
 
 /// As an array of numpy whose numbers are aligned: itself if it is one, without a copy where its maker allows that.
 pub fn asarray<'py>(object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyUntypedArray>> {
-    let made = object.py().import("numpy")?.call_method1("require", (object, object.py().None(), "A"))?;
+    let numpy = object.py().import("numpy")?;
+    if object.is_instance(&numpy.getattr("ma")?.getattr("MaskedArray")?)?
+        && numpy.getattr("ma")?.call_method1("is_masked", (object,))?.is_truthy()?
+    {
+        return Err(choice("array has masked numbers", "fill them, or give the rows without them"));
+    }
+    let made = numpy.call_method1("require", (object, object.py().None(), "A"))?;
     Ok(made.cast_into::<PyUntypedArray>()?)
 }
 
@@ -185,8 +191,29 @@ pub fn faces(object: &Bound<'_, PyAny>, name: &str, vertices: usize) -> PyResult
     Ok(faces)
 }
 
-/// Rows of `N` indices, copied; of one index a plain list.
+/// Rows of `N` indices that choose something, copied; of one index a plain list.
 pub fn indices<const N: usize>(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<[u32; N]>> {
+    let wrong = |_, index| choice(format!("{what} have index {index}"), "indices are from 0 to 4294967295");
+    indices_or(object, what, wrong)
+}
+
+/// Rows of `N` vertices of a mesh, copied; of one vertex a plain list.
+pub fn vertices_of<const N: usize>(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<[u32; N]>> {
+    indices_or(object, what, |row, index| {
+        let problem = Problem::Scene {
+            what: format!("row {row} has index {index}"),
+            advice: "give indices from 0 to 4294967295".into(),
+        };
+        raised(Error::Input { file: what.into(), problem })
+    })
+}
+
+/// Rows of indices; `wrong` makes an error of a row and an index that is none.
+fn indices_or<const N: usize>(
+    object: &Bound<'_, PyAny>,
+    what: &str,
+    wrong: impl Fn(usize, i64) -> PyErr,
+) -> PyResult<Vec<[u32; N]>> {
     let array = asarray(object)?;
     let shape = array.shape().to_vec();
     let advice = if N == 1 { "give a list of indices" } else { "give pairs of indices: shape (n, 2)" };
@@ -202,12 +229,10 @@ pub fn indices<const N: usize>(object: &Bound<'_, PyAny>, what: &str) -> PyResul
     let wide = array.call_method1("astype", ("=i8",))?.call_method1("reshape", (-1, N))?;
     let wide = wide.cast::<numpy::PyArray2<i64>>()?.readonly();
     let mut rows = Vec::with_capacity(shape[0]);
-    for row in wide.as_array().rows() {
+    for (at, row) in wide.as_array().rows().into_iter().enumerate() {
         let mut own = [0; N];
         for (to, &from) in own.iter_mut().zip(row) {
-            *to = u32::try_from(from).map_err(|_| {
-                choice(format!("{what} have index {from}"), "indices are from 0 to 4294967295")
-            })?;
+            *to = u32::try_from(from).map_err(|_| wrong(at, from))?;
         }
         rows.push(own);
     }

@@ -14,6 +14,7 @@ mod device;
 mod dlpack;
 mod errors;
 mod exclusions;
+mod filter;
 mod frame;
 mod geometry;
 mod grouped;

@@ -96,9 +96,15 @@ impl Curves {
     /// Returns the curves of an answer's rows.
     ///
     /// # Errors
-    /// As of `crossing_curves`.
+    /// [`Error::InvalidArgument`] for rows that are no triangle pairs; as of `crossing_curves`.
     pub fn of(geometry: &Geometry, scene: &Scene) -> Result<Curves, Error> {
-        let curves = crossing_curves(geometry.pairs(), scene.bodies());
+        let Geometry::Pairs(pairs) = geometry else {
+            return Err(Error::InvalidArgument {
+                what: "curves of an answer without triangle pairs".into(),
+                advice: "use the answer to a Discrete query".into(),
+            });
+        };
+        let curves = crossing_curves(pairs, scene.bodies());
         curves.map(|found| Curves { found, columns: Columns::default() })
     }
 }

@@ -39,36 +39,28 @@ impl Pose {
         rotation: Option<Bound<'_, PyAny>>,
         translation: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Pose> {
-        let or = |given: Option<Bound<'_, PyAny>>, numbers: &[f64]| match given {
-            Some(given) => Ok(given.unbind()),
-            None => PyTuple::new(py, numbers).map(|tuple| tuple.into_any().unbind()),
-        };
-        let on_gpu = [&rotation, &translation].map(|given| given.as_ref().is_some_and(is_on_gpu));
-        if on_gpu[0] != on_gpu[1] {
-            return Err(choice(
-                "rotation and translation are in different memories",
-                "give both on the GPU, or both on the host",
-            ));
+        match [&rotation, &translation].map(|given| given.as_ref().is_some_and(is_on_gpu)) {
+            [true, true] => {}
+            [false, false] => {
+                let here = scene::Pose::default();
+                let pose = scene::Pose {
+                    rotation: rotation.map_or(Ok(here.rotation), |given| row(&given, "a rotation"))?,
+                    translation: translation
+                        .map_or(Ok(here.translation), |given| row(&given, "a translation"))?,
+                };
+                checked(&Motion::pose(pose)).map_err(raised)?;
+                return Pose::known(py, pose);
+            }
+            _ => {
+                return Err(choice(
+                    "rotation and translation are in different memories",
+                    "give both on the GPU, or both on the host",
+                ));
+            }
         }
-        let here = scene::Pose::default();
-        let known = if on_gpu[0] {
-            None
-        } else {
-            let turned = rotation.as_ref().map(|rotation| row(rotation, "a rotation")).transpose()?;
-            let moved =
-                translation.as_ref().map(|translation| row(translation, "a translation")).transpose()?;
-            let pose = scene::Pose {
-                rotation: turned.unwrap_or(here.rotation),
-                translation: moved.unwrap_or(here.translation),
-            };
-            checked(&Motion::pose(pose)).map_err(raised)?;
-            Some(pose)
-        };
-        Ok(Pose {
-            rotation: or(rotation, &here.rotation)?,
-            translation: or(translation, &here.translation)?,
-            known,
-        })
+        // Both are given, and on a GPU.
+        let or_none = |given: Option<Bound<'_, PyAny>>| given.map_or_else(|| py.None(), Bound::unbind);
+        Ok(Pose { rotation: or_none(rotation), translation: or_none(translation), known: None })
     }
 
     /// Return the pose of a matrix, (4, 4) numbers, or (3, 4) without the last row.
@@ -95,13 +87,13 @@ impl Pose {
         }
     }
 
-    /// Rotation, as it was given.
+    /// Rotation x, y, z, w: a tuple of numbers, or the array on a GPU.
     #[getter]
     fn rotation(&self, py: Python<'_>) -> Py<PyAny> {
         self.rotation.clone_ref(py)
     }
 
-    /// Translation, as it was given.
+    /// Translation: a tuple of numbers, or the array on a GPU.
     #[getter]
     fn translation(&self, py: Python<'_>) -> Py<PyAny> {
         self.translation.clone_ref(py)

@@ -1,8 +1,8 @@
 //! A method of a detector for each class of queries.
 
+use crate::answer::Answer;
 use crate::detector::{Answered, Detector};
 use crate::query::{Accuracy, body_distances, body_pairs, discrete, first_of, iterations_of, near};
-use crate::rows::FirstContact;
 use pyo3::prelude::*;
 
 #[pymethods]
@@ -80,8 +80,8 @@ impl Detector {
     /// They are the rows of Continuous whose `toi` it is. The step is tested again, up to that time; with a
     /// `min_separation` all of it.
     /// Raises InvalidArgumentError if nothing begins at that time where the bodies are now.
-    fn first_contacts<'py>(&self, py: Python<'py>, first: PyRef<'_, FirstContact>) -> Answered<'py> {
-        self.answer_about(py, first.as_super(), |detector, found| {
+    fn first_contacts<'py>(&self, py: Python<'py>, first: &Answer) -> Answered<'py> {
+        self.answer_about(py, first, |detector, found| {
             detector.first_contacts(found).map(nearmiss::Contacts::from)
         })
     }

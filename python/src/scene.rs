@@ -1,8 +1,9 @@
 //! Bodies, and scenes of them.
 
-use crate::errors::{choice, integer, one_of, optional, raised};
+use crate::errors::{choice, one_of, raised};
 use crate::exclusions;
-use crate::host::{Most, faces, indices, points, positions, rows};
+use crate::filter::{environment_of, group_of, mask_of};
+use crate::host::{Most, faces, points, positions, rows, vertices_of};
 use crate::key::{self, Key, Pairs, bodies, body_of, numbers, pairs_of};
 use crate::matrix::pose_of;
 use crate::pose::Pose;
@@ -90,9 +91,9 @@ impl Body {
         let on_itself = self_collision;
         let thickness = thickness.map_or(Ok(Thickness::default()), |given| thickness_of(&given, name))?;
         let filter = CollisionFilter { environment, group, mask, self_collision: on_itself };
-        let edges = edges.map_or(Ok(Vec::new()), |edges| indices(&edges, &format!("edges of {name}")))?;
+        let edges = edges.map_or(Ok(Vec::new()), |edges| vertices_of(&edges, &format!("edges of {name}")))?;
         let points: Vec<[u32; 1]> =
-            points.map_or(Ok(Vec::new()), |points| indices(&points, &format!("points of {name}")))?;
+            points.map_or(Ok(Vec::new()), |points| vertices_of(&points, &format!("points of {name}")))?;
         let made = py.detach(|| {
             let mesh =
                 Mesh::new(name, given, triangles)?.with_edges(edges)?.with_points(points.into_flattened())?;
@@ -194,23 +195,6 @@ impl Body {
             body.face_count()
         )
     }
-}
-
-fn environment_of(given: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
-    Ok(optional(given, "environment", [0, u32::MAX.into()])?.map(|environment| environment as u32))
-}
-
-fn group_of(given: &Bound<'_, PyAny>) -> PyResult<u32> {
-    bits(given, "group")
-}
-
-fn mask_of(given: &Bound<'_, PyAny>) -> PyResult<u32> {
-    bits(given, "mask")
-}
-
-/// 32 bits; of a negative number, as ~1, the low ones.
-fn bits(given: &Bound<'_, PyAny>, name: &str) -> PyResult<u32> {
-    Ok(integer(given, name, [i32::MIN.into(), u32::MAX.into()])? as u32)
 }
 
 /// Bodies, numbered from 0 in the order in which they are added.

@@ -13,7 +13,6 @@ use crate::on_device::{DeviceAnswer, Owner};
 use crate::opened::take;
 use crate::pairs::Curves;
 use crate::query::{Query, queries_of};
-use crate::rows::{FirstContact, TrianglePairs};
 use crate::scene::{Body, scene_of};
 use crate::thickness::thickness_of;
 use crate::turns::python;
@@ -248,16 +247,15 @@ impl MultiDetector {
     }
 
     /// Return the curves in which surfaces cross: see Detector.curves.
-    fn curves(&self, py: Python<'_>, answer: PyRef<'_, TrianglePairs>) -> PyResult<Curves> {
-        self.work_of(py, answer.as_super(), |own, found| Curves::of(&own.geometry(found)?, own.scene()))
+    fn curves(&self, py: Python<'_>, answer: &Answer) -> PyResult<Curves> {
+        self.work_of(py, answer, |own, found| Curves::of(&own.geometry(found)?, own.scene()))
     }
 
     /// Return the contacts at the time of an earliest answer: see Detector.first_contacts.
-    fn first_contacts<'py>(&self, py: Python<'py>, first: PyRef<'_, FirstContact>) -> Answered<'py> {
-        let about: &Answer = first.as_super();
+    fn first_contacts<'py>(&self, py: Python<'py>, first: &Answer) -> Answered<'py> {
         self.answer(py, Does::Queries, |one| {
-            one.check(about.stamp)?;
-            one.detector.first_contacts(&about.contacts).map(nearmiss::Contacts::from)
+            one.check(first.stamp)?;
+            one.detector.first_contacts(&first.contacts).map(nearmiss::Contacts::from)
         })
     }
 

@@ -3,7 +3,8 @@
 
 use nearmiss::{Error, Interrupt};
 use pyo3::prelude::*;
-use std::panic::resume_unwind;
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread;
@@ -29,12 +30,16 @@ impl Watch {
     /// Waits for a lock, unless a signal comes.
     ///
     /// # Errors
-    /// [`Error::Interrupted`].
+    /// [`Error::Interrupted`]; [`Error::Bug`] if an earlier call with it has ended in a fault.
     pub fn lock<'a, T>(&self, of: &'a Mutex<T>) -> Result<MutexGuard<'a, T>, Error> {
         loop {
             match of.try_lock() {
                 Ok(guard) => return Ok(guard),
-                Err(TryLockError::Poisoned(guard)) => return Ok(guard.into_inner()),
+                Err(TryLockError::Poisoned(_)) => {
+                    return Err(Error::Bug {
+                        what: "an earlier call ended in a fault; make another one".into(),
+                    });
+                }
                 Err(TryLockError::WouldBlock) if self.cancelled.load(Relaxed) => {
                     return Err(Error::Interrupted);
                 }
@@ -85,7 +90,7 @@ pub fn watched<T: Send>(
 ) -> PyResult<T> {
     let watch = Watch::default();
     if !is_main(py)? {
-        return Ok(py.detach(|| work(&watch)));
+        return caught(py, || work(&watch));
     }
     let work = Mutex::new(Some(work));
     let run = || {
@@ -97,7 +102,7 @@ pub fn watched<T: Send>(
     let done = thread::scope(|scope| {
         let Ok(worker) = thread::Builder::new().name("nearmiss".into()).spawn_scoped(scope, run) else {
             // No thread is to be had: then no signal ends the work.
-            return py.detach(run);
+            return caught(py, run);
         };
         while !py.detach(|| watch.is_over()) {
             if raised.is_none()
@@ -110,17 +115,39 @@ pub fn watched<T: Send>(
                 interrupt.trigger();
             }
         }
-        py.detach(|| worker.join()).unwrap_or_else(|panic| resume_unwind(panic))
+        joined(py, worker)
     });
     match (raised, done) {
         (Some(error), _) => {
             interrupt.clear();
             Err(error)
         }
-        (None, Some(done)) => Ok(done),
+        (None, Ok(Some(done))) => Ok(done),
         // It is taken once.
-        (None, None) => Err(crate::errors::raised(Error::Bug { what: "work that was not done".into() })),
+        (None, Ok(None)) => Err(bug("work that was not done")),
+        (None, Err(error)) => Err(error),
     }
+}
+
+/// The result of a thread. A panic is a fault of ours.
+fn joined<T: Send>(py: Python<'_>, worker: thread::ScopedJoinHandle<'_, T>) -> PyResult<T> {
+    py.detach(|| worker.join()).map_err(|panic| bug(said(&*panic)))
+}
+
+/// Runs work on this thread. A panic is a fault of ours; a lock that it held refuses later calls.
+fn caught<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    let done = py.detach(|| catch_unwind(AssertUnwindSafe(work)).map_err(|panic| said(&*panic).to_owned()));
+    done.map_err(|what| bug(&what))
+}
+
+fn bug(what: &str) -> PyErr {
+    crate::errors::raised(Error::Bug { what: what.into() })
+}
+
+/// The message of a panic.
+fn said(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("a panic")
 }
 
 /// Looks at what a lock holds. A signal ends the wait for it.
@@ -160,10 +187,10 @@ pub fn left_behind<T: Send + 'static>(
             while !py.detach(|| watch.is_over()) {
                 py.check_signals()?;
             }
-            Ok(py.detach(|| worker.join()).unwrap_or_else(|panic| resume_unwind(panic)))
+            py.detach(|| worker.join()).map_err(|panic| bug(said(&*panic)))
         }
-        Ok(worker) => Ok(py.detach(|| worker.join()).unwrap_or_else(|panic| resume_unwind(panic))),
+        Ok(worker) => py.detach(|| worker.join()).map_err(|panic| bug(said(&*panic))),
         // No thread is to be had: then no signal ends the work.
-        Err(_) => Ok(py.detach(|| work())),
+        Err(_) => caught(py, || work()),
     }
 }

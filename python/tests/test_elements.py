@@ -102,7 +102,7 @@ def test_a_body_of_points_needs_no_face():
     [
         ({"edges": [[0, 9]]}, nm.InputError, "edge 0 names vertex 9, but there are 3"),
         ({"edges": [[1, 1]]}, nm.InputError, "edge 0 has vertex 1 at both ends"),
-        ({"edges": [[0, -1]]}, nm.InvalidArgumentError, "index -1"),
+        ({"edges": [[0, -1]]}, nm.InputError, "row 0 has index -1"),
         ({"edges": [0, 1]}, nm.InvalidArgumentError, "of shape"),
         ({"edges": [[0.5, 1]]}, nm.InvalidArgumentError, "of type"),
         ({"points": [3]}, nm.InputError, "point 0 names vertex 3"),
@@ -132,3 +132,10 @@ def test_lines_and_points_of_files_are_edges_and_points(tmp_path):
     vertices, faces = nm.read_mesh(path)
     assert faces.tolist() == [[0, 1, 2], [4, 3, 3], [5, 5, 5]]
     assert len(nm.Detector(nm.Body(vertices, faces), device=CPU).near(0.5)) >= 2
+
+
+def test_an_index_that_no_vertex_has_is_an_input_error():
+    corners = np.zeros((3, 3))
+    for lists in [{"points": [1, -1]}, {"edges": [[0, 1], [0, -1]]}, {"edges": [[0, 1], [0, 2**32]]}]:
+        with pytest.raises(nm.InputError, match="row 1 has index"):
+            nm.Body(corners, [[0, 1, 2]], **lists)

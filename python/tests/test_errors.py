@@ -96,8 +96,8 @@ REFUSED = [
     (lambda: detector().update([V]), nm.InvalidArgumentError, "inputs must be a mapping from body numbers or names, got <class 'list'>"),
     (lambda: detector().prepare(V, [nm.Near(1)]), nm.InvalidArgumentError, "got <class 'numpy.ndarray'>"),
     (lambda: geometry(configure(nm.Discrete(), solver="moller")), nm.InvalidArgumentError, "solver moller, which may share no point; use"),
-    (lambda: geometry(nm.Earliest()), nm.InvalidArgumentError, "an earliest query, which has no pairs of features; use"),
-    (lambda: geometry(nm.Distance()), nm.InvalidArgumentError, "a distance query, which has no pairs of features; read"),
+    (lambda: geometry(nm.Earliest()), nm.InvalidArgumentError, "an earliest query has no pairs of features or triangles; use"),
+    (lambda: geometry(nm.Distance()), nm.InvalidArgumentError, "a distance query has no pairs of features or triangles; read"),
     (lambda: detector().submit(), nm.InvalidArgumentError, "prepare"),
     (lambda: detector().prepare({0: V.tolist()}, [nm.Near(1)]), nm.InvalidArgumentError, "cannot be read in place by a submission; give arrays that stay"),
     (lambda: nm.read_mesh("no such file.ply"), nm.InputError, "no such file.ply"),
@@ -290,3 +290,29 @@ def test_a_forked_process_is_told():
         finally:
             os._exit(1)
     assert os.waitpid(child, 0)[1] == 0
+
+
+def test_what_would_be_lost_in_silence_is_refused():
+    corners, faces = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], float), [[0, 1, 2]]
+    masked = np.ma.masked_array(corners, mask=corners == 1)
+    with pytest.raises(nm.InvalidArgumentError, match="masked numbers"):
+        nm.Body(masked, faces)
+    assert nm.Body(np.ma.masked_array(corners), faces).vertex_count == 3
+    with pytest.raises(nm.InvalidArgumentError, match="group is 0"):
+        nm.Body(corners, faces, group=0)
+    detector = nm.Detector(nm.Body(corners, faces), device=nm.Device("cpu"))
+    for answer in [detector.near(1), detector.distance(), detector.earliest]:
+        answer = answer() if callable(answer) else answer
+        with pytest.raises(nm.InvalidArgumentError, match="without triangle pairs|no pairs of features"):
+            detector.curves(answer)
+    with pytest.raises(nm.InvalidArgumentError, match="first contacts of the answer to a near query"):
+        detector.first_contacts(detector.near(1))
+    with pytest.raises(nm.InvalidArgumentError, match="answer to a distance query has no pairs"):
+        detector.grouped(detector.distance(), 0)
+
+
+def test_a_pose_keeps_its_numbers():
+    turned = np.array([0.0, 0.0, 0.0, 1.0])
+    pose = nm.Pose(turned)
+    turned[:] = [1, 0, 0, 0]
+    assert pose.rotation == (0, 0, 0, 1) and pose == nm.Pose()

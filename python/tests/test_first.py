@@ -42,7 +42,7 @@ def test_nothing_that_meets_has_no_rows():
 def test_what_has_none_is_refused():
     made = falling()
     first = made.earliest()
-    with pytest.raises(TypeError):
+    with pytest.raises(nm.InvalidArgumentError):
         made.first_contacts(made.continuous())
     with pytest.raises(nm.InvalidArgumentError):
         falling().first_contacts(first)

@@ -249,6 +249,12 @@ fn described(path: &Path, line: usize, table: Table) -> Result<Described, Error>
         }
     };
     let (group, mask) = (table.group.unwrap_or(u32::MAX), table.mask.unwrap_or(u32::MAX));
+    if group == 0 {
+        return Err(bad(
+            "`group` is 0: the body is in no group",
+            "set `mask = 0` if it collides with no other",
+        ));
+    }
     if kind == BodyKind::Fixed && table.self_collision == Some(true) {
         let what = "`self_collision` is true, and a fixed body never collides with itself";
         return Err(bad(what, "remove it, or make the body rigid or deformable"));

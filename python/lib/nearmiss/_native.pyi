@@ -173,11 +173,11 @@ class Pose:
 
     @property
     def rotation(self) -> Array:
-        """Rotation, as it was given."""
+        """Rotation x, y, z, w: a tuple of numbers, or the array on a GPU."""
 
     @property
     def translation(self) -> Array:
-        """Translation, as it was given."""
+        """Translation: a tuple of numbers, or the array on a GPU."""
 
 class PoseStep:
     """Step of a rigid body from one pose to another, and the path between them.
