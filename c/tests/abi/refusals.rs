@@ -128,7 +128,7 @@ fn a_bad_body_is_refused() {
     refused(
         added(NearmissBody { triangles: null(), ..good }),
         NEARMISS_INVALID_ARGUMENT,
-        "triangles of a body is NULL, and its count is 30",
+        "triangles of a body is NULL, and its count is 10",
     );
     refused(
         added(NearmissBody { triangle_count: usize::MAX, ..good }),
