@@ -14,6 +14,8 @@ fuzz_target!(|bytes: &[u8]| {
                 assert_eq!(file.notes().iter().all(is_welded), file.clone().strict().is_ok());
                 let mesh = file.into_mesh();
                 let again = Mesh::new("again", mesh.positions().clone(), mesh.faces().to_vec());
+                let again = again.and_then(|again| again.with_edges(mesh.edges().to_vec()));
+                let again = again.and_then(|again| again.with_points(mesh.points().to_vec()));
                 assert!(again.is_ok(), "the door refuses what it let in");
                 let topology = Topology::new(mesh.faces(), mesh.vertex_count());
                 assert_eq!(check(&topology, mesh.faces()), Ok(()));

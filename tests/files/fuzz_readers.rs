@@ -69,8 +69,10 @@ fn survive(format: Format, bytes: &[u8]) -> Result<(), TestCaseError> {
     match read {
         Ok(file) => {
             let mesh = file.mesh();
-            prop_assert!(mesh.face_count() > 0);
+            prop_assert!(mesh.face_count() + mesh.edges().len() + mesh.points().len() > 0);
             let again = Mesh::new("again", mesh.positions().clone(), mesh.faces().to_vec());
+            let again = again.and_then(|again| again.with_edges(mesh.edges().to_vec()));
+            let again = again.and_then(|again| again.with_points(mesh.points().to_vec()));
             prop_assert!(again.is_ok(), "the door refuses what it let in");
             for note in file.notes() {
                 prop_assert!(note.count > 0 && note.to_string().starts_with("fuzz: "), "{note}");
@@ -97,7 +99,7 @@ fn valid_files() -> Vec<(Format, Vec<u8>)> {
                  property short z\nproperty list uchar int tags\nelement face 2\nproperty uchar red\n\
                  property list uchar int vertex_indices\nelement edge 1\nproperty int a\nend_header\n\
                  0 0 0 0\n1 0 0 2 7 8\n0 1e0 0 0\n0 .5 1 0\n255 3 0 1 2\n0 4 0 1 2 3\n5\n";
-    let obj = "# by hand\nv 0 0 0\nv 1 0 0\nv 0 1 0.1 # c\nv 0 0 1e3\nvt 0 0\nf 1/1 2//2 3/1/1\nf -1 \\\n -2 -3 1\n";
+    let obj = "# by hand\nv 0 0 0\nv 1 0 0\nv 0 1 0.1 # c\nv 0 0 1e3\nvt 0 0\nf 1/1 2//2 3/1/1\nl 1 2/1 -1 \\\n 2\np 3 1\nf -1 \\\n -2 -3 1\n";
     let mut binary = Vec::new();
     let mesh = MeshFile::parse("ascii", Format::Ply, ascii.as_bytes()).unwrap();
     encode_ply(mesh.mesh(), &mut binary).unwrap();
@@ -109,6 +111,9 @@ fn valid_files() -> Vec<(Format, Vec<u8>)> {
     let strips = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
                   element tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n\
                   7 0 1 2 -1 3 2 1\n";
+    let wires = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+                 element edge 3\nproperty int vertex1\nproperty uchar red\nproperty int vertex2\nend_header\n\
+                 0 0 0\n1 0 0\n0 1 0\n0 9 1\n2 9 2\n1 9 2\n";
     let off =
         "# by hand\nCOFF 4 3 0\n0 0 0 1 0 0\n1 0 0\n0 1 0.1 # c\n0 0 1e3\n3 0 1 2 0.5\n4 0 1 2 3\n2 0 1\n";
     let stl = "solid a b\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 .1\nendloop\nendfacet\n\
@@ -119,6 +124,7 @@ fn valid_files() -> Vec<(Format, Vec<u8>)> {
         (Format::Ply, binary),
         (Format::Ply, big),
         (Format::Ply, strips.into()),
+        (Format::Ply, wires.into()),
         (Format::Off, off.into()),
         (Format::Stl, stl.into()),
         (Format::Stl, super::formats::binary_stl(&[[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]; 2])),
@@ -214,7 +220,7 @@ proptest! {
     #![proptest_config(config())]
 
     #[test]
-    fn damaged_files_are_survived(which in 0usize..10, damages in proptest::collection::vec(damage(), 1..6)) {
+    fn damaged_files_are_survived(which in 0usize..11, damages in proptest::collection::vec(damage(), 1..6)) {
         let (format, mut bytes) = valid_files().swap_remove(which);
         damages.iter().for_each(|damage| apply(&mut bytes, damage));
         survive(format, &bytes)?;

@@ -68,7 +68,6 @@ fn who_meets_whom_is_told() {
     };
     for (text, expected) in [
         ("", 1),
-        ("environment = 0", 1),
         ("environment = 1", 0),
         ("environment = \"all\"", 1),
         ("group = 2\nmask = 0xff", 1),
@@ -79,7 +78,7 @@ fn who_meets_whom_is_told() {
         assert_eq!(contacts(text), Some(expected), "{text}");
     }
     let none = beside(&folder, "mesh = \"parts/tip_down.obj\"\ngroup = 0");
-    assert!(refused(3, &["detect", &none]).contains("`group` is 0: the body is in no group; set `mask = 0`"));
+    assert!(refused(3, &["detect", &none]).contains("in no group; set `mask = 0`"));
     // One body alone is tested against itself, unless it says that it is not.
     let crossed = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.2 0.2 -1\nv 0.2 0.3 1\nv 5 5 1\nf 1 2 3\nf 4 5 6\n";
     folder.write("parts/crossed.obj", crossed);
