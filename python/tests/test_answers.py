@@ -131,7 +131,7 @@ def test_triangles_meet_in_their_segments():
     only = detector.discrete(only_crossing=True)
     assert only.triangles.tolist() == [[0, 1]] and not only.is_free
     assert nm.self_intersections(vertices, faces, only_crossing=True).tolist() == [[0, 1]]
-    with pytest.raises(TypeError):
+    with pytest.raises(nm.InvalidArgumentError):
         detector.curves(detector.near(0.1))
 
 
