@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::mesh::{MAX_FACES, MAX_VERTICES, Problem};
 use crate::pipeline::{self, Layout, Pipeline, SceneParts};
 use crate::query::Query;
-use crate::scene::{Body, BodyId, DeviceMotion, Scene};
+use crate::scene::{Body, Scene};
 use std::sync::Arc;
 
 /// A pipeline, and the record of its builds and frames.
@@ -28,8 +28,8 @@ pub struct Engine {
     pub has_instances: bool,
     /// Whether a submission was prepared: these read vertices.
     pub submits: bool,
-    /// Motions of a prepared submission of bodies of which none may meet: no pipeline has them.
-    pub alone: Option<Vec<(BodyId, DeviceMotion)>>,
+    /// Whether a submission of bodies is prepared of which none may meet, so without a pipeline.
+    pub submits_alone: bool,
     /// Query whose answer the device holds, for the current positions.
     pub answered: Option<Query>,
     /// Milliseconds of the last build of tiles or trees.
@@ -88,7 +88,7 @@ impl Engine {
 
     /// Drops the pipeline with all its memory.
     pub fn drop_pipeline(&mut self) {
-        (self.pipeline, self.answered, self.alone) = (None, None, None);
+        (self.pipeline, self.answered, self.submits_alone) = (None, None, false);
     }
 }
 

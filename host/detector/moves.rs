@@ -17,7 +17,7 @@ impl Detector {
     /// moved.
     pub(crate) fn apply(&mut self, inputs: &[(BodyId, Motion)], query: Option<&Query>) -> Result<(), Error> {
         self.read_again(false);
-        self.engine.alone = None;
+        self.engine.submits_alone = false;
         let named = self.put(inputs, query)?;
         let mut moved = Vec::with_capacity(inputs.len());
         for (body, (own, named)) in self.scene.bodies_mut().iter_mut().zip(named).enumerate() {

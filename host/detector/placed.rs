@@ -16,18 +16,10 @@ pub struct Placed {
     pub named: Vec<bool>,
     /// Whether the last update named bodies, but none with two ends.
     lacks_ends: bool,
-    /// Bodies that a submission reads; up to date while the pipeline is prepared.
-    pub submitted: Vec<Submitted>,
-    /// Queries of a submission; up to date while the pipeline is prepared.
+    /// Motions that a submission reads; up to date while one is prepared.
+    pub submitted: Vec<(BodyId, DeviceMotion)>,
+    /// Queries of a submission; up to date while one is prepared.
     queries: Vec<Query>,
-}
-
-/// A body that a submission reads.
-#[derive(Clone, Copy)]
-pub struct Submitted {
-    pub body: BodyId,
-    /// Whether it moves in the step.
-    pub moves: bool,
 }
 
 impl Placed {
@@ -80,9 +72,7 @@ impl Placed {
 
     /// Records the bodies and the queries of submissions.
     pub fn submit(&mut self, inputs: &[(BodyId, DeviceMotion)], queries: &[Query]) {
-        self.queries = queries.to_vec();
-        let submitted = inputs.iter().map(|&(body, input)| Submitted { body, moves: input.is_moving() });
-        self.submitted = submitted.collect();
+        (self.submitted, self.queries) = (inputs.to_vec(), queries.to_vec());
     }
 }
 

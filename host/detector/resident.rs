@@ -67,11 +67,11 @@ impl Detector {
         if !self.engine.is_prepared() {
             return;
         }
-        for submitted in &self.placed.submitted {
-            let body = submitted.body.index();
+        for (body, motion) in &self.placed.submitted {
+            let body = body.index();
             if is_another || !self.resident.is_lost(body) {
                 self.resident.set_lost(body, false);
-                self.scene.bodies_mut()[body].placed_again(submitted.moves);
+                self.scene.bodies_mut()[body].placed_again(motion.is_moving());
             }
         }
     }

@@ -64,6 +64,11 @@ pub(crate) fn check_submission(queries: &[Query]) -> Result<(), Error> {
     queries.iter().try_for_each(without_bodies)
 }
 
+/// Motions from memory of the caller.
+fn on_device<'a>(motions: &[(BodyId, DeviceMotion)]) -> Vec<(BodyId, Motion<'a>)> {
+    motions.iter().map(|&(id, motion)| (id, Motion::OnDevice(motion))).collect()
+}
+
 /// Refuses a query of pairs of bodies: its rows are made on the host.
 fn without_bodies(query: &Query) -> Result<(), Error> {
     let kind = query.kind();
@@ -101,8 +106,7 @@ impl Detector {
 
     fn prepared(&mut self, motions: &[(BodyId, DeviceMotion)], queries: &[Query]) -> Result<(), Error> {
         check_submission(queries)?;
-        let given: Vec<(BodyId, Motion)> =
-            motions.iter().map(|&(id, motion)| (id, Motion::OnDevice(motion))).collect();
+        let given = on_device(motions);
         let in_motion = queries.iter().find(|query| !query.kind().is_at_rest());
         // If any query will read the end of the step, positions have room for it from the first on.
         self.engine.has_ends |= in_motion.is_some() && self.engine.pipeline.is_none();
@@ -117,7 +121,7 @@ impl Detector {
             self.try_submission(&given, queries)
         })?;
         self.placed.submit(motions, queries);
-        self.engine.alone = self.engine.pipeline.is_none().then(|| motions.to_vec());
+        self.engine.submits_alone = self.engine.pipeline.is_none();
         Ok(())
     }
 
@@ -156,7 +160,7 @@ impl Detector {
     /// is true after [`Detector::prepare`], until a call changes the detector.
     pub fn is_prepared(&self) -> bool {
         let pipeline = self.engine.pipeline.as_ref();
-        pipeline.map_or_else(|| self.engine.alone.is_some(), |pipeline| pipeline.is_prepared())
+        pipeline.map_or(self.engine.submits_alone, |pipeline| pipeline.is_prepared())
     }
 
     /// Submits the prepared queries to the device's stream. It only launches kernels, which read
@@ -184,13 +188,13 @@ impl Detector {
     /// Places bodies of which none may meet, without a pipeline: the host reads their memory if it
     /// can. On a GPU only the caller knows where they are: a later edit needs their positions again.
     fn place_alone(&mut self) -> Result<(), Error> {
-        let motions = self.engine.alone.clone().ok_or_else(not_prepared)?;
-        if !self.device.is_gpu() {
-            let given: Vec<(BodyId, Motion)> =
-                motions.iter().map(|&(id, motion)| (id, Motion::OnDevice(motion))).collect();
-            self.apply(&given, None)?;
+        if !self.engine.submits_alone {
+            return Err(not_prepared());
         }
-        self.engine.alone = Some(motions);
+        if !self.device.is_gpu() {
+            self.apply(&on_device(&self.placed.submitted), None)?;
+        }
+        self.engine.submits_alone = true;
         Ok(())
     }
 
@@ -198,7 +202,7 @@ impl Detector {
     /// was submitted before may still read them. Bodies are where the last submission placed them.
     pub fn unprepare(&mut self) {
         self.read_again(false);
-        (self.engine.answered, self.engine.alone) = (None, None);
+        (self.engine.answered, self.engine.submits_alone) = (None, false);
         if let Some(pipeline) = self.engine.pipeline.as_mut().filter(|pipeline| pipeline.is_prepared()) {
             // Nothing moves. An error of the device comes again with the next call, and the
             // preparation has ended all the same.
