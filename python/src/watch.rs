@@ -1,6 +1,7 @@
 //! Work that a signal ends. Python handles signals on the main thread, so a frame runs on another
 //! thread, and the main thread waits for it.
 
+use crate::errors::raised;
 use nearmiss::{Error, Interrupt};
 use pyo3::prelude::*;
 use std::any::Any;
@@ -98,50 +99,46 @@ pub fn watched<T: Send>(
         let work = work.lock().unwrap_or_else(PoisonError::into_inner).take();
         work.map(|work| work(&watch))
     };
-    let mut raised = None;
+    let mut signal = None;
     let done = thread::scope(|scope| {
         let Ok(worker) = thread::Builder::new().name("nearmiss".into()).spawn_scoped(scope, run) else {
             // No thread is to be had: then no signal ends the work.
             return caught(py, run);
         };
         while !py.detach(|| watch.is_over()) {
-            if raised.is_none()
+            if signal.is_none()
                 && let Err(error) = py.check_signals()
             {
-                raised = Some(error);
+                signal = Some(error);
                 watch.cancelled.store(true, Relaxed);
             }
-            if raised.is_some() && watch.begun.load(Relaxed) {
+            if signal.is_some() && watch.begun.load(Relaxed) {
                 interrupt.trigger();
             }
         }
-        joined(py, worker)
+        ended(py, || worker.join())
     });
-    match (raised, done) {
+    match (signal, done) {
         (Some(error), _) => {
             interrupt.clear();
             Err(error)
         }
         (None, Ok(Some(done))) => Ok(done),
         // It is taken once.
-        (None, Ok(None)) => Err(bug("work that was not done")),
+        (None, Ok(None)) => Err(raised(Error::Bug { what: "work that was not done".into() })),
         (None, Err(error)) => Err(error),
     }
 }
 
-/// The result of a thread. A panic is a fault of ours.
-fn joined<T: Send>(py: Python<'_>, worker: thread::ScopedJoinHandle<'_, T>) -> PyResult<T> {
-    py.detach(|| worker.join()).map_err(|panic| bug(said(&*panic)))
-}
-
-/// Runs work on this thread. A panic is a fault of ours; a lock that it held refuses later calls.
+/// Runs work on this thread.
 fn caught<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
-    let done = py.detach(|| catch_unwind(AssertUnwindSafe(work)).map_err(|panic| said(&*panic).to_owned()));
-    done.map_err(|what| bug(&what))
+    ended(py, || catch_unwind(AssertUnwindSafe(work)))
 }
 
-fn bug(what: &str) -> PyErr {
-    crate::errors::raised(Error::Bug { what: what.into() })
+/// The result of work that may panic, which is a fault of ours: locks that it held refuse later calls.
+fn ended<T: Send>(py: Python<'_>, end: impl FnOnce() -> thread::Result<T> + Send) -> PyResult<T> {
+    let bug = |panic: Box<dyn Any + Send>| Error::Bug { what: said(&*panic).into() };
+    py.detach(|| end().map_err(bug)).map_err(raised)
 }
 
 /// The message of a panic.
@@ -164,7 +161,7 @@ pub fn look<S: Send, T: Send>(
     if let Ok(held) = at.try_lock() {
         return Ok(look(&held));
     }
-    watched(py, interrupt, |watch| watch.lock(at).map(|held| look(&held)))?.map_err(crate::errors::raised)
+    watched(py, interrupt, |watch| watch.lock(at).map(|held| look(&held)))?.map_err(raised)
 }
 
 /// Runs work that nothing ends. A signal leaves it behind: it goes on by itself, and what it comes
@@ -183,13 +180,13 @@ pub fn left_behind<T: Send + 'static>(
         its()
     };
     match thread::Builder::new().name("nearmiss".into()).spawn(run) {
-        Ok(worker) if is_main(py)? => {
-            while !py.detach(|| watch.is_over()) {
+        Ok(worker) => {
+            let hears = is_main(py)?;
+            while hears && !py.detach(|| watch.is_over()) {
                 py.check_signals()?;
             }
-            py.detach(|| worker.join()).map_err(|panic| bug(said(&*panic)))
+            ended(py, || worker.join())
         }
-        Ok(worker) => py.detach(|| worker.join()).map_err(|panic| bug(said(&*panic))),
         // No thread is to be had: then no signal ends the work.
         Err(_) => caught(py, || work()),
     }
