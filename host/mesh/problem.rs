@@ -28,7 +28,8 @@ pub enum Problem {
     },
     /// An extension without a reader.
     #[error(
-        "has the extension {found:?}, which no reader of meshes knows; give a .ply, .obj, .stl, .off, .gltf or .glb file"
+        "has the extension {found:?}, which no reader of meshes knows; give a .ply, .obj, .stl, .off, .gltf \
+         or .glb file"
     )]
     UnknownExtension {
         /// The extension without its dot; empty if there is none.
@@ -86,8 +87,8 @@ pub enum Problem {
     },
     /// A pivot or a rotation vector that is not finite, or a turn of more than a whole one.
     #[error(
-        "turns by {turn:?} about {pivot:?}; give a pivot of coordinates up to 2^480 and a rotation vector of at most 2 pi, in radians: \
-         divide a longer step"
+        "turns by {turn:?} about {pivot:?}; give a pivot of coordinates up to 2^480 and a rotation vector of at \
+         most 2 pi, in radians: divide a longer step"
     )]
     NoTurn {
         /// The pivot, as passed.

@@ -21,9 +21,9 @@ pub struct OutArgs {
     /// A .vtp has two points for each contact, at which the features are nearest. Its cells have
     /// `row` (of the .csv, from 0), `kind` (0 vf, 1 ee, 2 two triangles, 3 ev, 4 vv), `status`
     /// (0 unverified, 1 certified, 2 undecided), `bodies`, `feature_a`, `feature_b`, `toi`,
-    /// `toi_upper` and `distance`. For triangles at t = 0 it has the curves in which they cross, and the segments and
-    /// points in which they touch. These cells have `kind` (0 crossing, 1 point, 2 segment), `group`
-    /// (-1 for a touch) and `is_closed`, their points `row`.
+    /// `toi_upper` and `distance`. For triangles at t = 0 it has the curves in which they cross, and
+    /// the segments and points in which they touch. These cells have `kind` (0 crossing, 1 point, 2
+    /// segment), `group` (-1 for a touch) and `is_closed`, their points `row`.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
     /// Add vertices, weights, points, distance and normal to --out

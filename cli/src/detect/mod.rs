@@ -244,8 +244,7 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
         let verbose = args.out.verbose || research.repeat > 1;
         print(&text::human(&told, &contacts, verbose))?;
     }
-    let meets = text::meets(&contacts) || told.crossing.is_some_and(|pairs| pairs > 0);
-    Ok(args.out.fails(meets))
+    Ok(args.out.fails(text::meets(&contacts, told.crossing)))
 }
 
 /// The files of a sequence, one a step: `#` in the name is the number of the frame.

@@ -68,13 +68,13 @@ pub fn rows(kind: QueryKind, count: u64) -> String {
 }
 
 /// Whether something meets: the answer has rows, or triangles share a point when the step starts. The
-/// nearest of all bodies meet if their distance is 0.
-pub fn meets(found: &Contacts) -> bool {
+/// nearest of all bodies meet if their distance is 0. `crossing` are pairs that rows do not show.
+pub fn meets(found: &Contacts, crossing: Option<u64>) -> bool {
     let has_rows = match &found.rows {
         Rows::Distance(nearest) => nearest.is_some_and(|nearest| nearest.distance == 0.0),
         rows => !rows.is_empty(),
     };
-    has_rows || found.starts_crossing.is_some_and(|pairs| pairs > 0)
+    has_rows || [found.starts_crossing, crossing].into_iter().flatten().any(|pairs| pairs > 0)
 }
 
 /// Notes and caveats, one on a line.

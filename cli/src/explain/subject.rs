@@ -84,7 +84,6 @@ pub fn of(args: &ExplainArgs) -> Result<Subject, Error> {
         // clap requires one of them.
         return Err(Error::Bug { what: "a pair without features".into() });
     };
-    let of = [&p, &q].map(|feature| format!("{} of {}", feature.called, feature.body.name()));
     let at = |end: bool| -> Result<Vec<[f64; 3]>, Error> { p.points(end).chain(q.points(end)).collect() };
     let mut notes = Vec::new();
     if self_query && p.corners.iter().any(|v| q.corners.contains(v)) {
@@ -92,6 +91,7 @@ pub fn of(args: &ExplainArgs) -> Result<Subject, Error> {
     }
     let case = Case { features, positions_t0: four(at(false)?)?, positions_t1: four(at(true)?)? };
     let single = bodies.iter().all(is_single);
+    let of = [p.called, q.called];
     Ok(Subject::Moving(Moving { of, case, single, notes, params: params(args, of_pair(a, b)) }))
 }
 
@@ -196,14 +196,14 @@ fn features(between: Between) -> Features {
 /// A feature of a body.
 struct Feature<'a> {
     body: &'a Body,
-    /// Its kind and number.
+    /// Its kind, number and body, in words.
     called: String,
     corners: Vec<u32>,
 }
 
 impl<'a> Feature<'a> {
     fn new(body: &'a Body, what: &'static str, i: u32, corners: Vec<u32>) -> Feature<'a> {
-        Feature { body, called: format!("{what} {i}"), corners }
+        Feature { body, called: named(what, i, body), corners }
     }
 
     /// Its corners at t = 0, or at the end of the step.

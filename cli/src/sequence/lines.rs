@@ -66,9 +66,8 @@ impl Total {
         if crossing.is_some_and(|pairs| pairs > 0) {
             let (frames, first) = self.crossing.unwrap_or((0, number));
             self.crossing = Some((frames + 1, first));
-            self.meets = true;
         }
-        self.meets |= text::meets(found);
+        self.meets |= text::meets(found, crossing);
     }
 
     /// Whether no step has been tested.

@@ -1,5 +1,5 @@
-//! OBJ files to positions, faces, edges and points: the keywords `v`, `f`, `l` and `p`. All others are counted, or
-//! known to hold no geometry.
+//! OBJ files to positions, faces, edges and points: the keywords `v`, `f`, `l` and `p`. All others
+//! are counted, or known to hold no geometry.
 
 mod word;
 
@@ -71,7 +71,7 @@ fn whole_lines(bytes: &[u8], mut each: impl FnMut(Line<'_>) -> Result<(), Proble
 /// Adds the references of a line to vertices that the file does not have. Problems of their form are
 /// known.
 fn missing(line: usize, text: &[u8], vertices: usize, problems: &mut Problems) -> Result<(), Problem> {
-    let mut words = statement(text);
+    let mut words = words(statement(text));
     if !words.next().is_some_and(|word| matches!(Word::of(word), Word::Face | Word::Line | Word::Point)) {
         return Ok(());
     }
@@ -80,10 +80,9 @@ fn missing(line: usize, text: &[u8], vertices: usize, problems: &mut Problems) -
     far.try_for_each(|index| problems.add(ObjProblem::Index { line, index, vertices }))
 }
 
-/// The words of a line, without a comment.
-fn statement(text: &[u8]) -> impl Iterator<Item = &[u8]> {
-    let end = text.iter().position(|&b| b == b'#').unwrap_or(text.len());
-    words(&text[..end])
+/// A line without its comment.
+fn statement(text: &[u8]) -> &[u8] {
+    &text[..text.iter().position(|&b| b == b'#').unwrap_or(text.len())]
 }
 
 /// Lines without their ends.
@@ -117,9 +116,10 @@ struct Obj {
 
 impl Obj {
     fn line(&mut self, line: usize, text: &[u8]) -> Result<(), ObjProblem> {
-        let mut words = statement(text);
+        let text = statement(text);
+        let mut words = words(text);
         let Some(word) = words.next() else { return Ok(()) };
-        if statement(text).any(|word| word.contains(&0)) {
+        if text.contains(&0) {
             return Err(ObjProblem::Nul { line });
         }
         match Word::of(word) {
