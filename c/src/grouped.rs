@@ -69,7 +69,7 @@ pub(crate) struct ShownCurves {
     row_groups: Vec<u32>,
 }
 
-fn by_of(by: u32) -> Result<GroupBy, Error> {
+pub(crate) fn by_of(by: u32) -> Result<GroupBy, Error> {
     Ok(match by {
         0 => GroupBy::Vertex,
         1 => GroupBy::Edge,

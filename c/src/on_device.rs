@@ -166,6 +166,12 @@ impl NearmissDetector {
         refused(what, "call nearmiss_detector_collect, or change groups and masks")
     }
 
+    /// The answer to a query on the only device.
+    pub(crate) fn found_on_device(&mut self, query: &Query) -> Result<DeviceAnswer, Error> {
+        let found = self.detector.one("one answer in device memory")?.on_device(query);
+        found.ok_or_else(|| self.not_on_device(query))
+    }
+
     /// An answer as C sees it.
     fn shown(&mut self, found: DeviceAnswer) -> Result<NearmissDeviceAnswer, Error> {
         let DeviceAnswer { entries, lists, is_ordered, status, earliest, edges, starts, .. } = found;
@@ -220,8 +226,7 @@ pub unsafe extern "C" fn nearmiss_detector_on_device(
         let to = given(answer, "answer")?;
         // SAFETY: the caller's promise.
         let query = unsafe { given(query, "query")?.query() }?;
-        let found = own.detector.one("one answer in device memory")?.on_device(&query);
-        let found = found.ok_or_else(|| own.not_on_device(&query))?;
+        let found = own.found_on_device(&query)?;
         to.write(own.shown(found)?);
         Ok(())
     })

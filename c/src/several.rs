@@ -6,7 +6,7 @@ use crate::error::{NearmissCode, NearmissError, given, make, refused};
 use crate::query::NearmissQuery;
 use crate::rows::items;
 use crate::scene::NearmissScene;
-use nearmiss::contacts::{DeviceAnswer, First, GroupBy, Grouped, Located, Note, RowList};
+use nearmiss::contacts::{DeviceAnswer, DeviceExtras, First, GroupBy, Grouped, Located, Note, RowList};
 use nearmiss::scene::{BodyId, DeviceMotion, Exclusions, Motion, Scene, Thickness};
 use nearmiss::words::counted;
 use nearmiss::{Answer, Body, Contact, Contacts, Detector, Error, Interrupt, MultiDetector, Query};
@@ -145,8 +145,9 @@ impl Machines {
         &mut self,
         motions: &[(BodyId, DeviceMotion)],
         queries: &[Query],
+        extras: &DeviceExtras,
     ) -> Result<(), Error> {
-        both!(self, own => own.prepare(motions, queries))
+        both!(self, own => own.prepare_with(motions, queries, extras))
     }
 
     /// The answer on each device.

@@ -6,6 +6,7 @@ use crate::error::{NearmissCode, NearmissError, given};
 use crate::motion::NearmissMotion;
 use crate::query::NearmissQuery;
 use crate::rows::items;
+use nearmiss::contacts::DeviceExtras;
 use nearmiss::{Error, Query};
 use std::mem::MaybeUninit;
 
@@ -31,21 +32,39 @@ pub unsafe extern "C" fn nearmiss_detector_prepare(
 ) -> NearmissCode {
     NearmissDetector::work(detector, error, |own| {
         // SAFETY: the caller's promise.
+        unsafe {
+            own.prepared_with((motions, motion_count), (queries, query_count), &DeviceExtras::default())
+        }
+    })
+}
+
+impl NearmissDetector {
+    /// Prepares submissions.
+    ///
+    /// # Safety
+    /// As of [`nearmiss_detector_prepare`].
+    pub(crate) unsafe fn prepared_with(
+        &mut self,
+        (motions, motion_count): (*const NearmissMotion, usize),
+        (queries, query_count): (*const NearmissQuery, usize),
+        extras: &DeviceExtras,
+    ) -> Result<(), Error> {
+        // SAFETY: the caller's promise.
         let queries = unsafe { items(queries, query_count, "queries") }?;
         // SAFETY: the caller's promise.
         let queries = queries.iter().map(|query| unsafe { query.query() });
         let queries = queries.collect::<Result<Vec<Query>, Error>>()?;
         // SAFETY: the caller's promise, twice.
-        let motions = unsafe { own.motions(motions, motion_count, |motion| motion.device_motion()) }?;
-        let prepared = own.detector.prepare(&motions, &queries);
+        let motions = unsafe { self.motions(motions, motion_count, |motion| motion.device_motion()) }?;
+        let prepared = self.detector.prepare(&motions, &queries, extras);
         // A call that was refused before it changed anything leaves the earlier preparation.
-        if prepared.is_ok() || !own.detector.is_prepared() {
-            (own.prepared, own.starts) = (Vec::new(), Vec::new());
+        if prepared.is_ok() || !self.detector.is_prepared() {
+            (self.prepared, self.starts) = (Vec::new(), Vec::new());
         }
         prepared?;
-        own.prepared = queries;
+        self.prepared = queries;
         Ok(())
-    })
+    }
 }
 
 /// Whether the detector is prepared: `nearmiss_detector_submit` may be called, and a recording of

@@ -2,9 +2,9 @@
 
 use super::{Contact, Kind, NearPair};
 use crate::scene::BodyId;
-use nearmiss_kernels::abi::{nearest_of, weights_of};
-use nearmiss_kernels::math::Vec3;
-use nearmiss_kernels::prim::near::{edge_edge, vertex_face};
+use nearmiss_kernels::prim::geometry::Connection;
+
+pub use nearmiss_kernels::prim::geometry::{Corners, on_lines};
 
 /// Geometry of a contact or a near pair: see [`Detector::geometry`](crate::Detector::geometry).
 ///
@@ -37,38 +37,6 @@ pub struct ContactGeometry {
     /// the points are apart, it is along their difference. If they touch, it is the normal of the
     /// face or of both edges, on their side of approach. Zeros if no direction is defined.
     pub normal: [f64; 3],
-}
-
-/// Threshold of a direction, a ratio. The difference of the nearest points is a direction if it
-/// exceeds this part of the features' extent. Distances err by `192u` of the extent
-/// (`DISTANCE_ERROR`, 2e-14), so the direction errs by 2e-6 at most. The product of two sides is a
-/// direction if the sine of their angle exceeds it.
-const DIRECTION: f64 = 1e-8;
-
-/// Four vertices of a contact at three times.
-#[derive(Clone, Copy, Debug)]
-pub struct Corners {
-    /// At the time of contact.
-    pub now: [[f64; 3]; 4],
-    /// At the start of the step. If a body turns: shortly before the contact.
-    pub before: [[f64; 3]; 4],
-    /// At the end of the step. If a body turns: shortly after the contact.
-    pub after: [[f64; 3]; 4],
-    /// Whether a body turns.
-    pub turns: bool,
-}
-
-impl Corners {
-    /// Returns the vertices on straight lines between both ends of the step.
-    pub fn straight(ends: &[[[f64; 3]; 2]; 4], time: f64) -> Corners {
-        let [now, before, after] = [time, 0.0, 1.0].map(|time| on_lines(ends, time));
-        Corners { now, before, after, turns: false }
-    }
-}
-
-/// Returns the places at a time on straight lines between both ends of the step.
-pub fn on_lines(ends: &[[[f64; 3]; 2]; 4], time: f64) -> [[f64; 3]; 4] {
-    ends.map(|[t0, t1]| (Vec3(t0) * (1.0 - time) + Vec3(t1) * time).0)
 }
 
 /// Two features, named as in a contact or a near pair.
@@ -106,91 +74,30 @@ impl From<&NearPair> for Named {
 impl ContactGeometry {
     /// Computes the geometry of two features; `corners` are in the order of `vertices`.
     pub fn of(named: &Named, vertices: [u32; 4], corners: &Corners) -> ContactGeometry {
-        let [now, start, end] = [corners.now, corners.before, corners.after].map(|at| at.map(Vec3));
-        let (first, weights) = (named.kind.vertices_of_a(), weights(named.kind, now));
-        let point = |corners: &[Vec3<f64>; 4], range: std::ops::Range<usize>| -> Vec3<f64> {
-            range.map(|i| corners[i] * weights[i]).fold(NONE, |sum, part| sum + part)
-        };
-        let gap = |corners: &[Vec3<f64>; 4]| point(corners, 0..first) - point(corners, first..4);
-        let apart = gap(&now);
-        let sides = |a: usize, b: usize| unit(now[b] - now[a]);
-        let across = match named.kind {
-            Kind::Vf => sides(1, 2).cross(sides(1, 3)),
-            Kind::Ee => sides(0, 1).cross(sides(2, 3)),
-            Kind::Ev | Kind::Vv => NONE,
-        };
-        let extent = now.iter().map(|p| length(*p - now[0])).fold(0.0, f64::max);
-        // The gap at the start of a turn says nothing of the approach. The motion does.
-        let came = if corners.turns { gap(&start) - gap(&end) } else { gap(&start) };
-        let normal = if length(apart) > DIRECTION * extent {
-            apart
-        } else {
-            // The side from which the first feature came. If it started in contact, against its
-            // motion.
-            let way = came - gap(&end);
-            let across = match (length(across) > DIRECTION, came == NONE) {
-                (true, _) => across,
-                (false, false) => came,
-                (false, true) => way,
-            };
-            let side = across.dot(came);
-            let side = if side == 0.0 { across.dot(way) } else { side };
-            if side < 0.0 { -across } else { across }
-        };
+        let (kind, first) = (named.kind as u8, named.kind.vertices_of_a());
+        let of = Connection::of(kind, corners);
         ContactGeometry {
             kind: named.kind,
             bodies: named.bodies,
             owner: [0, 1, 2, 3].map(|at| named.bodies[usize::from(at >= first)]),
             vertices,
-            weights,
-            signed_weights: [0, 1, 2, 3].map(|at| if at < first { weights[at] } else { 0.0 - weights[at] }),
-            points: [point(&now, 0..first).0, point(&now, first..4).0],
-            distance: length(apart),
-            normal: unit(normal).0,
+            weights: of.weights,
+            signed_weights: of.signed_weights(kind),
+            points: of.points.map(|point| point.0),
+            distance: of.distance,
+            normal: of.normal.0,
         }
     }
-}
-
-/// The zero vector.
-const NONE: Vec3<f64> = Vec3([0.0; 3]);
-
-/// A vector divided by a number.
-fn over(v: Vec3<f64>, by: f64) -> Vec3<f64> {
-    v.map(|x| x / by)
-}
-
-/// Length of a vector, scaled so that the squares of its components cannot overflow.
-fn length(v: Vec3<f64>) -> f64 {
-    let most = v.0.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    if most == 0.0 { 0.0 } else { most * over(v, most).dot(over(v, most)).sqrt() }
-}
-
-/// Unit vector of this direction; zeros for zeros.
-fn unit(v: Vec3<f64>) -> Vec3<f64> {
-    let length = length(v);
-    if length > 0.0 { over(v, length) } else { NONE }
-}
-
-/// Weights of the four vertices in the nearest points.
-fn weights(kind: Kind, at: [Vec3<f64>; 4]) -> [f64; 4] {
-    let [a, b, c, d] = at;
-    // Distances are not limited.
-    let far = f64::INFINITY;
-    let near = match kind {
-        Kind::Vf => vertex_face(a, [b, c, d], far),
-        Kind::Ee => edge_edge([a, b], [c, d], far),
-        Kind::Ev => vertex_face(c, [a, b, b], far),
-        Kind::Vv => None,
-    };
-    weights_of(kind as u8, nearest_of(kind as u8, near.map_or([0.0; 2], |near| near.at)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nearmiss_kernels::math::Vec3;
 
     fn geometry(kind: Kind, time: f64, ends: [[[f64; 3]; 2]; 4]) -> ContactGeometry {
         let named = Named { kind, bodies: [BodyId(0); 2], features: [0, 0], time, measure: time };
+        let ends = ends.map(|ends| ends.map(Vec3));
         ContactGeometry::of(&named, [0, 1, 2, 3], &Corners::straight(&ends, time))
     }
 

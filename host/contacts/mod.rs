@@ -31,7 +31,7 @@ pub use located::{Geometry, Located};
 pub use near::{Closest, NearPair};
 pub use nearest::NearestTriangles;
 pub use notes::Note;
-pub use on_device::{DeviceAnswer, DeviceList, Entries};
+pub use on_device::{DeviceAnswer, DeviceExtras, DeviceGroups, DeviceList, Entries};
 pub use pairs::{END_ERROR, PairGeometry, PairKind, Part};
 pub use rows::RowList;
 pub(crate) use rows::{Keep, Row};

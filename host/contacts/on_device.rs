@@ -1,6 +1,8 @@
 //! Addresses of a submitted frame's answer on the device.
 
-pub use nearmiss_kernels::abi::{FrameStatus, Hit, NearHit, NearestHit, Pair};
+use super::GroupBy;
+
+pub use nearmiss_kernels::abi::{FrameStatus, Hit, NearHit, NearestHit, Pair, RowGeometry};
 
 /// Type of the entries of a list on the device, each 8, 32 or 96 bytes: little-endian, without
 /// padding. Vertices, triangles and edges are numbered through all bodies: see
@@ -29,6 +31,70 @@ pub struct DeviceList {
     pub room: usize,
 }
 
+/// Parts of an answer that a submission makes in device memory, on request: see
+/// [`Detector::prepare_with`](crate::Detector::prepare_with).
+///
+/// Rows are numbered through both [lists](DeviceAnswer::lists), features through all bodies. An
+/// answer has the parts that it can have. Continuous and near answers have all. Discrete answers are
+/// grouped by face and by corner. Others have none.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct DeviceExtras {
+    pub(crate) geometry: bool,
+    pub(crate) least: bool,
+    pub(crate) groups: Vec<GroupBy>,
+}
+
+impl DeviceExtras {
+    /// Adds a [`RowGeometry`] for each row. Cost: 128 bytes a row that there is room for.
+    #[must_use]
+    pub fn with_geometry(self) -> DeviceExtras {
+        DeviceExtras { geometry: true, ..self }
+    }
+
+    /// Adds the least time of contact, or the least distance, of each vertex, as of
+    /// [`Detector::least_by_vertex`](crate::Detector::least_by_vertex). Cost: 8 bytes a vertex.
+    #[must_use]
+    pub fn with_least_by_vertex(self) -> DeviceExtras {
+        DeviceExtras { least: true, ..self }
+    }
+
+    /// Adds the rows of each feature, as of [`Detector::grouped`](crate::Detector::grouped). Cost: a
+    /// sort, and 20 bytes for each feature of a row: of [`GroupBy::Corner`] four, or six of two
+    /// triangles.
+    #[must_use]
+    pub fn grouped_by(mut self, by: GroupBy) -> DeviceExtras {
+        if !self.groups.contains(&by) {
+            self.groups.push(by);
+        }
+        self
+    }
+
+    /// The parts that rows of features can have, or rows of triangles.
+    pub(crate) fn of(&self, of_features: bool) -> DeviceExtras {
+        let of_triangles = |by: &GroupBy| matches!(by, GroupBy::Face | GroupBy::Corner);
+        let groups = self.groups.iter().copied().filter(|by| of_features || of_triangles(by));
+        let (geometry, least) = (self.geometry && of_features, self.least && of_features);
+        DeviceExtras { geometry, least, groups: groups.collect() }
+    }
+
+    /// Whether there are none.
+    pub(crate) fn is_empty(&self) -> bool {
+        *self == DeviceExtras::default()
+    }
+}
+
+/// Rows by feature in device memory, as in [`Grouped`](super::Grouped).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct DeviceGroups {
+    /// Features by which they are grouped.
+    pub by: GroupBy,
+    /// First row of each feature of all bodies, and the end: u32.
+    pub starts: DeviceList,
+    /// Numbers of rows: u32. All bits of an unused one are set.
+    pub rows: DeviceList,
+}
+
 /// Addresses of a submitted frame's answer in device memory. They are valid until another call on
 /// the detector: see [`Detector::submit`](crate::Detector::submit).
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -53,4 +119,10 @@ pub struct DeviceAnswer {
     pub edges: DeviceList,
     /// First vertex, triangle and edge of each body; the last entry has the totals.
     pub starts: Vec<[u32; 3]>,
+    /// A [`RowGeometry`] for each row, on request. Unused rows are zeros, of weight 0.
+    pub geometry: Option<DeviceList>,
+    /// Least time or distance of each vertex, on request: f64, infinity without a row.
+    pub least_by_vertex: Option<DeviceList>,
+    /// Rows by feature, on request, in the order of the request.
+    pub grouped: Vec<DeviceGroups>,
 }

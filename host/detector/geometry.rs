@@ -10,6 +10,7 @@ use crate::memory;
 use crate::pipeline::{Layout, Whereabouts};
 use crate::query::Query;
 use crate::scene::{Body, PoseStep};
+use nearmiss_kernels::math::Vec3;
 use rayon::prelude::*;
 
 impl Detector {
@@ -113,13 +114,13 @@ impl Detector {
         let at = |vertex: u32| {
             let at =
                 |end: usize| ends.get(end.min(ends.len() - 1)).and_then(|end| end.get_f64(vertex as usize));
-            Some([at(0)?, at(1)?])
+            Some([Vec3(at(0)?), Vec3(at(1)?)])
         };
         let bodies = self.scene.bodies();
         let steps = if query.certified().is_some() { turning(bodies, &places) } else { Vec::new() };
         let one = |named: &Named| {
             let (starts, vertices) = corners(&layout, named)?;
-            let mut ends = [[[0.0; 3]; 2]; 4];
+            let mut ends = [[Vec3([0.0; 3]); 2]; 4];
             for (corner, vertex) in ends.iter_mut().zip(vertices) {
                 *corner = at(vertex)?;
             }
@@ -145,7 +146,7 @@ fn around(
     named: &Named,
     own: [u32; 4],
     bodies: &[Body],
-    (ends, steps): (&[[[f64; 3]; 2]; 4], [Option<PoseStep>; 2]),
+    (ends, steps): (&[[Vec3<f64>; 2]; 4], [Option<PoseStep>; 2]),
 ) -> Option<Corners> {
     if steps == [None; 2] {
         return Some(Corners::straight(ends, named.time));
@@ -158,7 +159,7 @@ fn around(
             let side = usize::from(k >= first);
             if let Some(pose) = poses[side] {
                 let mesh = bodies.get(named.bodies[side].index())?.positions_t0();
-                *corner = pose.apply(mesh.get_f64(own[k] as usize)?);
+                *corner = Vec3(pose.apply(mesh.get_f64(own[k] as usize)?));
             }
         }
         Some(corners)

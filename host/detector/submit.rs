@@ -3,7 +3,7 @@
 use super::Detector;
 use super::frame::Answered;
 use super::question::Question;
-use crate::contacts::{Answer, Contacts, DeviceAnswer};
+use crate::contacts::{Answer, Contacts, DeviceAnswer, DeviceExtras};
 use crate::device::emulator::start_threads;
 use crate::error::Error;
 use crate::pipeline::collect::collect;
@@ -100,11 +100,46 @@ impl Detector {
     /// - if a traversal needs the host;
     /// - if the lists are still too short after more rounds than any schedule needs.
     pub fn prepare(&mut self, motions: &[(BodyId, DeviceMotion)], queries: &[Query]) -> Result<(), Error> {
-        let prepared = self.prepared(motions, queries);
+        self.prepare_with(motions, queries, &DeviceExtras::default())
+    }
+
+    /// As [`Detector::prepare`], with parts of the answers that submissions also make on the device:
+    /// geometry of rows, rows by feature, the least time or distance of each vertex.
+    /// [`Detector::on_device`] returns their addresses.
+    ///
+    /// ```
+    /// use nearmiss::{Body, Detector, Device, Mesh, Near, contacts::DeviceExtras, device::Backend, mesh::Positions};
+    ///
+    /// let corners = vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, 0.1], [1.0, 1.0, 5.0], [2.0, 2.0, 5.0]];
+    /// let mesh = Mesh::new("two triangles", Positions::F32(corners), vec![[0, 1, 2], [3, 4, 5]])?;
+    /// let mut detector = Detector::new(Device::open(Backend::Cpu, None)?, Body::deformable(mesh))?;
+    /// let near = Near::within(0.5);
+    /// detector.prepare_with(&[], &[near.into()], &DeviceExtras::default().with_geometry())?;
+    /// detector.submit()?;
+    /// let answer = detector.on_device(&near.into()).expect("prepared");
+    /// println!("geometry of rows at {:#x}", answer.geometry.expect("wanted").address);
+    /// # Ok::<(), nearmiss::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As for [`Detector::prepare`]. [`Error::InvalidArgument`] if no answer can have a part, and for
+    /// geometry of a step in which a rigid body may turn.
+    pub fn prepare_with(
+        &mut self,
+        motions: &[(BodyId, DeviceMotion)],
+        queries: &[Query],
+        extras: &DeviceExtras,
+    ) -> Result<(), Error> {
+        let prepared = self.prepared(motions, queries, extras);
         self.ended(prepared)
     }
 
-    fn prepared(&mut self, motions: &[(BodyId, DeviceMotion)], queries: &[Query]) -> Result<(), Error> {
+    fn prepared(
+        &mut self,
+        motions: &[(BodyId, DeviceMotion)],
+        queries: &[Query],
+        extras: &DeviceExtras,
+    ) -> Result<(), Error> {
         check_submission(queries)?;
         let given = on_device(motions);
         let in_motion = queries.iter().find(|query| !query.kind().is_at_rest());
@@ -112,13 +147,14 @@ impl Detector {
         self.engine.has_ends |= in_motion.is_some() && self.engine.pipeline.is_none();
         self.begin_submissions();
         self.apply(&given, in_motion)?;
+        self.has_geometry_on_device(in_motion, extras)?;
         let questions = queries.iter().map(|&query| self.question(query)).collect::<Result<Vec<_>, _>>()?;
         // Once before the rounds. Then lists that queries share have the longest length, and there
         // is a front that a submission can continue from.
         self.answer_whole(&questions)?;
         until_whole(|| {
             self.answer_whole(&questions)?;
-            self.try_submission(&given, queries)
+            self.try_submission(&given, queries, extras)
         })?;
         self.placed.submit(motions, queries);
         self.engine.submits_alone = self.engine.pipeline.is_none();
@@ -145,7 +181,12 @@ impl Detector {
 
     /// Places bodies from the caller's memory, and submits the queries once. Returns whether there
     /// was enough room.
-    fn try_submission(&mut self, given: &[(BodyId, Motion)], queries: &[Query]) -> Result<bool, Error> {
+    fn try_submission(
+        &mut self,
+        given: &[(BodyId, Motion)],
+        queries: &[Query],
+        extras: &DeviceExtras,
+    ) -> Result<bool, Error> {
         // Only from the caller's memory: a query may have downloaded positions to the host.
         self.apply(given, None)?;
         let Some(pipeline) = &mut self.engine.pipeline else { return Ok(true) };
@@ -153,7 +194,24 @@ impl Detector {
             pipeline.place(self.scene.bodies(), &[])?;
         }
         let places: Vec<usize> = queries.iter().filter_map(|query| pipeline.place_of(query)).collect();
-        pipeline.prepare(&places)
+        pipeline.prepare(&places, extras)
+    }
+
+    /// Refuses geometry of a step in which a rigid body may turn: its points move on arcs.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`].
+    fn has_geometry_on_device(&self, in_motion: Option<&Query>, extras: &DeviceExtras) -> Result<(), Error> {
+        let certified = in_motion.filter(|query| extras.geometry && query.certified().is_some());
+        match self.scene.bodies().iter().find(|body| certified.is_some() && body.may_turn()) {
+            Some(body) => Err(Error::InvalidArgument {
+                what: format!("geometry in device memory is not made in this step: {} may turn", body.name()),
+                advice:
+                    "give rigid bodies straight steps, or use `Detector::geometry` of the collected answer"
+                        .into(),
+            }),
+            None => Ok(()),
+        }
     }
 
     /// Returns whether [`Detector::submit`] may be called, and a recording of it launched again. It

@@ -7,6 +7,7 @@ pub mod counts;
 mod demand;
 pub mod enclose;
 mod excluded;
+mod extras;
 mod hubs;
 mod instances;
 mod launch;

@@ -2,9 +2,9 @@
 
 use crate::mesh::Positions;
 use nearmiss_kernels::abi::{
-    BelowPrecisionArgs, CullArgs, CutArgs, DiscreteArgs, FeaturesArgs, LeastArgs, MeshVerticesArgs,
-    MortonArgs, NearArgs, NearExcludingArgs, PlaceArgs, Point, Positions as Frames, RungArgs, SolveArgs,
-    Span, StartsArgs, ThickNearArgs, ThickRungArgs,
+    AnswerGeometryArgs, BelowPrecisionArgs, CullArgs, CutArgs, DiscreteArgs, FeaturesArgs, Hit, LeastArgs,
+    MeshVerticesArgs, MortonArgs, NearArgs, NearExcludingArgs, NearHit, PlaceArgs, Point,
+    Positions as Frames, RungArgs, SolveArgs, Span, StartsArgs, ThickNearArgs, ThickRungArgs,
 };
 use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::math::{Real, Vec3};
@@ -73,6 +73,10 @@ pub trait Precision: Real + Send {
     type Ee64: Entry<Args = SolveArgs<Self>>;
     /// Counts listed pairs that are too large for the tolerance.
     type BelowPrecision: Entry<Args = BelowPrecisionArgs<Self>>;
+    /// Geometry of contacts.
+    type GeometryOfHits: Entry<Args = AnswerGeometryArgs<Self, Hit>>;
+    /// Geometry of near pairs.
+    type GeometryOfNear: Entry<Args = AnswerGeometryArgs<Self, NearHit>>;
     /// Pairs that come nearer than at the start.
     type Approach: Entry<Args = ThickRungArgs<Self>>;
     /// Isolation of roots in f32.
@@ -140,6 +144,8 @@ impl Precision for f32 {
     type Isolate64 = entry::narrow_isolate_f32_f64;
     type Settle = entry::narrow_settle_f32;
     type Slice = entry::narrow_slice_f32;
+    type GeometryOfHits = entry::answer_geometry_hit_f32;
+    type GeometryOfNear = entry::answer_geometry_near_f32;
     type Approach = entry::narrow_approach_f32;
     type Separate32 = entry::narrow_separate_f32_f32;
     type Separate64 = entry::narrow_separate_f32_f64;
@@ -202,6 +208,8 @@ impl Precision for f64 {
     type Isolate64 = entry::narrow_isolate_f64_f64;
     type Settle = entry::narrow_settle_f64;
     type Slice = entry::narrow_slice_f64;
+    type GeometryOfHits = entry::answer_geometry_hit_f64;
+    type GeometryOfNear = entry::answer_geometry_near_f64;
     type Approach = entry::narrow_approach_f64;
     type Separate32 = entry::narrow_separate_f64_f32;
     type Separate64 = entry::narrow_separate_f64_f64;

@@ -72,5 +72,7 @@ pub const EARLIEST: &str = "the earliest time of contact";
 pub const ORDER: &str = "bins, slots and keys of the contacts";
 /// Addresses and poses in memory of the caller, and checks of its numbers.
 pub const DEVICE_ARRAYS: &str = "addresses of the caller's memory, and checks of its numbers";
+/// Geometry of rows, rows of features, least numbers of vertices.
+pub const EXTRAS: &str = "parts of a submitted answer, on request";
 /// Status of the answer, for the caller's kernels.
 pub const STATUS: &str = "capacity of each list, and status of the answer";

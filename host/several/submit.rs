@@ -2,7 +2,7 @@
 
 use super::MultiDetector;
 use super::lent::Copies;
-use crate::contacts::{Answer, Contacts, DeviceAnswer};
+use crate::contacts::{Answer, Contacts, DeviceAnswer, DeviceExtras};
 use crate::detector::{Detector, check_submission};
 use crate::error::Error;
 use crate::pipeline::not_prepared;
@@ -17,11 +17,29 @@ impl MultiDetector {
     /// # Errors
     /// As there, and as of [`MultiDetector::update`] and [`MultiDetector::query`].
     pub fn prepare(&mut self, motions: &[(BodyId, DeviceMotion)], queries: &[Query]) -> Result<(), Error> {
-        let prepared = self.prepared(motions, queries);
+        self.prepare_with(motions, queries, &DeviceExtras::default())
+    }
+
+    /// As [`Detector::prepare_with`]: each device makes the parts of its share.
+    ///
+    /// # Errors
+    /// As there, and as of [`MultiDetector::prepare`].
+    pub fn prepare_with(
+        &mut self,
+        motions: &[(BodyId, DeviceMotion)],
+        queries: &[Query],
+        extras: &DeviceExtras,
+    ) -> Result<(), Error> {
+        let prepared = self.prepared(motions, queries, extras);
         self.ended(prepared)
     }
 
-    fn prepared(&mut self, motions: &[(BodyId, DeviceMotion)], queries: &[Query]) -> Result<(), Error> {
+    fn prepared(
+        &mut self,
+        motions: &[(BodyId, DeviceMotion)],
+        queries: &[Query],
+        extras: &DeviceExtras,
+    ) -> Result<(), Error> {
         check_submission(queries)?;
         let queries: Vec<Query> =
             queries.iter().map(|query| self.divisible(*query)).collect::<Result<_, _>>()?;
@@ -46,7 +64,7 @@ impl MultiDetector {
                     Motion::OnDevice(own) => Some((*id, *own)),
                     Motion::Positions(_) | Motion::Step(_) | Motion::Pose(_) | Motion::PoseStep(_) => None,
                 });
-                detector.prepare(&own.collect::<Vec<_>>(), &queries)
+                detector.prepare_with(&own.collect::<Vec<_>>(), &queries, extras)
             })?;
             if self.agree(&before) {
                 return Ok(());

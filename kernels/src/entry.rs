@@ -53,7 +53,7 @@ use crate::stage::traverse::instances::{
 use crate::stage::traverse::{
     front, left_out, nearest as nearest_first, per_leaf, queue, steal, tile_triangles, tiles as tile_pairs,
 };
-use crate::stage::{balance, order, place, starts, status, turns};
+use crate::stage::{answer, balance, order, place, starts, status, turns};
 use bytemuck::NoUninit;
 use core::marker::PhantomData;
 use lanes::{BALANCE, NARROW, RUNG, SPREAD, WIDE};
@@ -242,6 +242,17 @@ kernels! {
     order_rank_pair: order::rank::rank::<Pair, B>, [OrderArgs<Pair>], WIDE, 0;
     order_rank_hit: order::rank::rank::<Hit, B>, [OrderArgs<Hit>], WIDE, 0;
     order_rank_near: order::rank::rank::<NearHit, B>, [OrderArgs<NearHit>], WIDE, 0;
+    answer_geometry_hit_f32: answer::geometry::geometry::<f32, Hit, B>, [AnswerGeometryArgs<f32, Hit>], NARROW, 0;
+    answer_geometry_hit_f64: answer::geometry::geometry::<f64, Hit, B>, [AnswerGeometryArgs<f64, Hit>], NARROW, 0;
+    answer_geometry_near_f32: answer::geometry::geometry::<f32, NearHit, B>, [AnswerGeometryArgs<f32, NearHit>], NARROW, 0;
+    answer_geometry_near_f64: answer::geometry::geometry::<f64, NearHit, B>, [AnswerGeometryArgs<f64, NearHit>], NARROW, 0;
+    answer_infinite: answer::least::infinite, [AnswerInfiniteArgs], WIDE, 0;
+    answer_least_hit: answer::least::least::<Hit, B>, [AnswerLeastArgs<Hit>], WIDE, 0;
+    answer_least_near: answer::least::least::<NearHit, B>, [AnswerLeastArgs<NearHit>], WIDE, 0;
+    answer_keys_pair: answer::groups::keys::<Pair, B>, [AnswerKeysArgs<Pair>], WIDE, 0;
+    answer_keys_hit: answer::groups::keys::<Hit, B>, [AnswerKeysArgs<Hit>], WIDE, 0;
+    answer_keys_near: answer::groups::keys::<NearHit, B>, [AnswerKeysArgs<NearHit>], WIDE, 0;
+    answer_groups: answer::groups::groups, [AnswerGroupsArgs], WIDE, 0;
     sort_pass: sort::pass, [SortArgs], WIDE, sort::shared_bytes(WIDE);
     status_frame: status::status, [StatusArgs], NARROW, 0;
 }

@@ -6,6 +6,7 @@ use crate::device::Device;
 use crate::errors::raised;
 use crate::exclusions;
 use crate::geometry;
+use crate::grouped::extras_of;
 use crate::key::{self, Key, Pairs, body_of, numbers, pairs_of};
 use crate::on_device::{DeviceAnswer, Owner};
 use crate::pairs::Curves;
@@ -157,8 +158,20 @@ impl Detector {
     ///   arrays on a CPU. Write new positions into them. They are held while prepared.
     /// - `queries`: a list of queries, answered by every submission. No two may differ in numbers
     ///   alone.
-    fn prepare(&self, py: Python<'_>, inputs: &Bound<'_, PyAny>, queries: &Bound<'_, PyAny>) -> PyResult<()> {
-        self.prepared(py, inputs, &queries_of(queries)?)
+    /// - `geometry`, `least_by_vertex`, `grouped`: parts of the answers that submissions also make on
+    ///   the device. `on_device` has them. `grouped` has "vertex", "edge", "face" or "corner".
+    #[pyo3(signature = (inputs, queries, *, geometry = false, least_by_vertex = false, grouped = Vec::new()))]
+    fn prepare(
+        &self,
+        py: Python<'_>,
+        inputs: &Bound<'_, PyAny>,
+        queries: &Bound<'_, PyAny>,
+        geometry: bool,
+        least_by_vertex: bool,
+        grouped: Vec<String>,
+    ) -> PyResult<()> {
+        let extras = extras_of(geometry, least_by_vertex, &grouped)?;
+        self.prepared(py, inputs, &queries_of(queries)?, &extras)
     }
 
     /// Whether `submit` may be called, and a graph that recorded it launched again.

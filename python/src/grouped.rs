@@ -5,12 +5,24 @@ use crate::detector::Detector;
 use crate::errors::choice;
 use crate::key::{Key, body_of};
 use crate::several::MultiDetector;
-use nearmiss::contacts::GroupBy;
+use nearmiss::contacts::{DeviceExtras, GroupBy};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 
 /// Starts of each feature's rows, and the rows.
 type Grouped<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<u32>>);
+
+/// Parts of answers that submissions also make on the device.
+pub fn extras_of(geometry: bool, least_by_vertex: bool, grouped: &[String]) -> PyResult<DeviceExtras> {
+    let mut extras = DeviceExtras::default();
+    if geometry {
+        extras = extras.with_geometry();
+    }
+    if least_by_vertex {
+        extras = extras.with_least_by_vertex();
+    }
+    grouped.iter().try_fold(extras, |extras, name| Ok(extras.grouped_by(by_of(name)?)))
+}
 
 /// The features of a name.
 fn by_of(name: &str) -> PyResult<GroupBy> {

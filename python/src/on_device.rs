@@ -222,6 +222,15 @@ const NEAREST_TRIANGLES: &[Column] = &[
     ("points", 48, REAL, &[2, 3]),
 ];
 
+/// Of `nearmiss::contacts::on_device::RowGeometry`, of 128 bytes.
+const GEOMETRY: &[Column] = &[
+    ("distances", 0, REAL, &[]),
+    ("normals", 8, REAL, &[3]),
+    ("signed_weights", 32, REAL, &[4]),
+    ("points", 64, REAL, &[2, 3]),
+    ("vertices", 112, INDEX, &[4]),
+];
+
 /// Bytes of an entry, and its columns: of `nearmiss::contacts::{Pair, Hit, NearHit, NearestHit}`.
 fn columns(entries: Entries) -> (u64, &'static [Column]) {
     match entries {
@@ -246,6 +255,29 @@ impl DeviceAnswer {
         };
         let shape = Shape { address, place, dtype, shape, strides };
         DeviceArray { shape, device: self.device.clone(), owner: self.owner.clone_ref(py), asked: self.asked }
+    }
+
+    /// A list of numbers.
+    fn packed(&self, py: Python<'_>, list: contacts::DeviceList, dtype: Dtype) -> DeviceArray {
+        self.array(py, list.address, dtype, (vec![list.room as i64], vec![1]))
+    }
+
+    /// The columns of a list of entries of so many bytes.
+    fn columns<'py>(
+        &self,
+        py: Python<'py>,
+        list: &contacts::DeviceList,
+        bytes: u64,
+        columns: &[Column],
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let named = PyDict::new(py);
+        for &(name, begin, dtype, inner) in columns {
+            let size = u64::from(dtype.bits / 8);
+            let shape = [&[list.room as i64], inner].concat();
+            let strides = [&[(bytes / size) as i64], &crate::dlpack::packed(inner)[..]].concat();
+            named.set_item(name, self.array(py, list.address + begin, dtype, (shape, strides)))?;
+        }
+        Ok(named)
     }
 }
 
@@ -275,17 +307,39 @@ impl DeviceAnswer {
     #[getter]
     fn lists<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let (bytes, columns) = columns(self.answer.entries);
-        let list = |list: &contacts::DeviceList| {
-            let named = PyDict::new(py);
-            for &(name, begin, dtype, inner) in columns {
-                let size = u64::from(dtype.bits / 8);
-                let shape = [&[list.room as i64], inner].concat();
-                let strides = [&[(bytes / size) as i64], &crate::dlpack::packed(inner)[..]].concat();
-                named.set_item(name, self.array(py, list.address + begin, dtype, (shape, strides)))?;
-            }
-            Ok(named)
-        };
-        self.answer.lists.iter().map(list).collect()
+        self.answer.lists.iter().map(|list| self.columns(py, list, bytes, columns)).collect()
+    }
+
+    /// Geometry of rows, if `prepare` was called with `geometry=True`; else None.
+    ///
+    /// A dictionary of columns, as of `Detector.geometry`: vertices (room, 4) int32 through all bodies,
+    /// signed_weights (room, 4), points (room, 2, 3), normals (room, 3), distances (room,) float64.
+    /// Rows are numbered through both lists. Unused rows are zeros, so they weigh nothing.
+    #[getter]
+    fn geometry<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        self.answer.geometry.map(|list| self.columns(py, &list, 128, GEOMETRY)).transpose()
+    }
+
+    /// (vertices,) float64: least time or distance of each vertex, infinite without a row.
+    ///
+    /// None unless `prepare` was called with `least_by_vertex=True`.
+    #[getter]
+    fn least_by_vertex(&self, py: Python<'_>) -> Option<DeviceArray> {
+        self.answer.least_by_vertex.map(|list| self.packed(py, list, REAL))
+    }
+
+    /// Rows by feature, for each name in `grouped` of `prepare`: (starts, rows), int32.
+    ///
+    /// Rows of feature i are rows[starts[i]:starts[i + 1]], ascending; an unused place is -1. Rows are
+    /// numbered through both lists, features through all bodies.
+    #[getter]
+    fn grouped<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let named = PyDict::new(py);
+        for groups in &self.answer.grouped {
+            let arrays = [groups.starts, groups.rows].map(|list| self.packed(py, list, INDEX));
+            named.set_item(groups.by.name(), PyTuple::new(py, arrays)?)?;
+        }
+        Ok(named)
     }
 
     /// (5,) int64: counts of the submission, and whether its answer is whole.

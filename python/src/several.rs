@@ -8,6 +8,7 @@ use crate::errors::raised;
 use crate::exclusions;
 use crate::frame::{Frame, Named, Reader, keyed};
 use crate::geometry;
+use crate::grouped::extras_of;
 use crate::key::{self, Key, Pairs, body_of, numbers, pairs_of};
 use crate::on_device::{DeviceAnswer, Owner};
 use crate::opened::take;
@@ -198,11 +199,21 @@ impl MultiDetector {
     ///
     /// Arrays may be on any of the GPUs; every submission copies them to the others. The work is
     /// divided by what it costs now, until the next preparation.
-    fn prepare(&self, py: Python<'_>, inputs: &Bound<'_, PyAny>, queries: &Bound<'_, PyAny>) -> PyResult<()> {
+    #[pyo3(signature = (inputs, queries, *, geometry = false, least_by_vertex = false, grouped = Vec::new()))]
+    fn prepare(
+        &self,
+        py: Python<'_>,
+        inputs: &Bound<'_, PyAny>,
+        queries: &Bound<'_, PyAny>,
+        geometry: bool,
+        least_by_vertex: bool,
+        grouped: Vec<String>,
+    ) -> PyResult<()> {
+        let extras = extras_of(geometry, least_by_vertex, &grouped)?;
         let (queries, frame) = (queries_of(queries)?, self.frame_of(py, inputs, true)?);
         let (given, held) = (frame.on_device()?, frame.held);
-        let (done, unread) =
-            self.work(py, |one| one.prepare(held, |detector| detector.prepare(&given, &queries)))?;
+        let (done, unread) = self
+            .work(py, |one| one.prepare(held, |detector| detector.prepare_with(&given, &queries, &extras)))?;
         drop(unread);
         done.map_err(raised)
     }

@@ -10,6 +10,7 @@ use crate::key::{self, Key};
 use crate::pose::{Ends, Pose};
 use crate::watch::{self, watched};
 use nearmiss::Error;
+use nearmiss::contacts::DeviceExtras;
 use nearmiss::scene::{BodyId, BodyKind};
 use pyo3::prelude::*;
 use serde::Serialize;
@@ -147,12 +148,13 @@ impl Detector {
         py: Python<'_>,
         inputs: &Bound<'_, PyAny>,
         queries: &[nearmiss::Query],
+        extras: &DeviceExtras,
     ) -> PyResult<()> {
         let frame = self.frame_of(py, inputs)?;
         let given = frame.on_device()?;
         let held = frame.held;
-        let (done, unread) =
-            self.work(py, |one| one.prepare(held, |detector| detector.prepare(&given, queries)))?;
+        let (done, unread) = self
+            .work(py, |one| one.prepare(held, |detector| detector.prepare_with(&given, queries, extras)))?;
         drop(unread);
         done.map_err(raised)
     }

@@ -1,6 +1,7 @@
 //! Frames of what lies on the device: submitted, not waited for, and to the bit what the same frames are by way of the host.
 
 mod exclusions;
+mod extras;
 mod faults;
 mod inputs;
 mod left_out;

@@ -1,6 +1,7 @@
 //! Submissions of several queries, with positions in memory of the device; on a CPU that is the host's.
 
 use super::*;
+use crate::refusals::refused;
 use NearmissCode::NEARMISS_INVALID_ARGUMENT;
 use nearmiss::scene::Pose;
 use nearmiss_lab::scene::soup;
@@ -153,4 +154,65 @@ fn positions_come_back_from_the_device() {
         nearmiss_detector_download_positions(Some(&mut made), 0, nothing, nothing, count, e)
     });
     assert_eq!(none, Ok(()));
+}
+
+/// Parts on the device, on request: weights of unused rows are 0, and each row's sum to 0.
+#[test]
+fn parts_of_an_answer_are_where_the_detector_says() {
+    let of = soup(120, 6, true).expect("a soup");
+    let mut shared = Shared { ends: of.ends().map(Positions::to_f64) };
+    let (motion, query) = (shared.motion(), near(0.02));
+    let mut own = detector(&[described(&of)]);
+    let by = [NearmissGroupBy::NEARMISS_BY_CORNER as u32];
+    let extras =
+        NearmissDeviceExtras { geometry: 1, least_by_vertex: 1, grouped_by: by.as_ptr(), group_count: 1 };
+    let mut prepare_with = |queries: &[NearmissQuery], extras: &NearmissDeviceExtras| {
+        let (detector, of) = (Some(&mut *own), queries.as_ptr());
+        // SAFETY: the test keeps the memory; names are NULL.
+        told(|error| unsafe {
+            nearmiss_detector_prepare_with(
+                detector,
+                &raw const motion,
+                1,
+                of,
+                queries.len(),
+                Some(extras),
+                error,
+            )
+        })
+    };
+    let unknown = NearmissDeviceExtras { grouped_by: [7].as_ptr(), ..extras };
+    refused(prepare_with(&[query], &unknown), NEARMISS_INVALID_ARGUMENT, "unknown, got 7");
+    refused(prepare_with(&[nearmiss_query(0)], &extras), NEARMISS_INVALID_ARGUMENT, "geometry of rows");
+    assert_eq!(prepare_with(&[query], &extras), Ok(()));
+    assert_eq!(submit(&mut own), Ok(()));
+    // SAFETY: names are NULL.
+    let places: NearmissExtrasOnDevice = got(|to, error| unsafe {
+        nearmiss_detector_extras_on_device(Some(&mut own), Some(&query), to, error)
+    })
+    .expect("prepared");
+    let place = on_device(&mut own, &query).expect("prepared");
+    // SAFETY: on a CPU the addresses are the host's, and nothing runs.
+    let (status, records, least, starts) = unsafe {
+        let list = |list: NearmissDeviceList| (list.address, list.room as usize);
+        let (records, least, starts) =
+            (list(places.geometry), list(places.least_by_vertex), list(places.starts[3]));
+        (
+            &*(place.status as *const NearmissFrameStatus),
+            std::slice::from_raw_parts(records.0 as *const NearmissDeviceRowGeometry, records.1),
+            std::slice::from_raw_parts(least.0 as *const f64, least.1),
+            std::slice::from_raw_parts(starts.0 as *const u32, starts.1),
+        )
+    };
+    let count = (status.first + status.second) as usize;
+    assert!(count > 10 && count <= records.len() && least.len() == 360 && starts.len() == 361);
+    for (row, record) in records.iter().enumerate() {
+        let sum: f64 = record.signed_weights.iter().sum();
+        let size: f64 = record.signed_weights.iter().map(|w| w.abs()).sum();
+        assert!(sum.abs() < 1e-12 && (size - if row < count { 2.0 } else { 0.0 }).abs() < 1e-12, "row {row}");
+        let nearest = record.vertices.iter().map(|v| least[*v as usize]).fold(0.0, f64::max);
+        assert!(row >= count || nearest <= record.distance * (1.0 + 1e-12), "row {row}");
+    }
+    assert_eq!(starts[360] as usize, 4 * count);
+    assert_eq!((places.starts[0].address, places.rows[1].room), (0, 0));
 }

@@ -1,7 +1,7 @@
 //! Purpose of each kernel.
 
 /// Stages of a frame, in their order, and the purpose of each.
-pub const STAGES: [(&str, &str); 9] = [
+pub const STAGES: [(&str, &str); 10] = [
     ("place", "vertices where the frame puts them"),
     ("construct", "the level-ordered tree"),
     ("fit", "volumes of the leaves"),
@@ -10,6 +10,7 @@ pub const STAGES: [(&str, &str); 9] = [
     ("balance", "work queues of equal length"),
     ("narrow", "contacts of the candidates"),
     ("order", "contacts in canonical order"),
+    ("answer", "parts of a submitted answer, on request"),
     ("status", "whether a submitted frame is complete"),
 ];
 
@@ -17,7 +18,7 @@ pub const STAGES: [(&str, &str); 9] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 100] = [
+const KERNELS: [(&str, &str); 105] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
     ("place_turns", "rotation vectors and paths of bodies that turn"),
     ("place", "poses applied, uploads put in place, other bodies at rest"),
@@ -117,6 +118,11 @@ const KERNELS: [(&str, &str); 100] = [
     ("order_place", "a key for each contact, in its bin"),
     ("order_merge", "runs of keys in long bins"),
     ("order_rank", "rows in the order of their keys"),
+    ("answer_geometry", "vertices, weights, points and normal of each row"),
+    ("answer_infinite", "no time and no distance yet"),
+    ("answer_least", "the least time or distance of each vertex"),
+    ("answer_keys", "a key for each feature of each row"),
+    ("answer_groups", "rows of each feature"),
     ("status_frame", "count and capacity of each list"),
 ];
 

@@ -3,7 +3,7 @@
 use crate::contacts::Entries;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::order::{Order, Ordered};
-use nearmiss_kernels::abi::{Counter, Span};
+use nearmiss_kernels::abi::{AnswerRows, Counter, Counters, Hit, NearHit, Output, Pair, Span};
 
 /// The place of a frame's answer in device memory.
 pub struct AnswerLists {
@@ -40,6 +40,58 @@ impl AnswerLists {
             earliest: None,
             crossing: None,
             edges: Span::EMPTY,
+        }
+    }
+}
+
+/// The rows of an answer, for kernels that follow; without the features that they name.
+#[derive(Clone, Copy)]
+pub enum RowSpans {
+    /// Triangle pairs.
+    Pairs(AnswerRows<Pair>),
+    /// Contacts in motion.
+    Contacts(AnswerRows<Hit>),
+    /// Features within a distance.
+    Near(AnswerRows<NearHit>),
+}
+
+/// Returns the rows of one list or two, or the list that they are ordered into for a submission.
+pub fn rows_of<T: Ordered>(
+    lists: &[&List<T>],
+    order: Option<&Order<T>>,
+    counters: Counters,
+) -> AnswerRows<T> {
+    let output = |at: usize| lists.get(at).map_or(Output::EMPTY, |list| list.output(counters));
+    AnswerRows {
+        first: output(0),
+        second: output(1),
+        ordered: order.and_then(Order::contacts).unwrap_or(Span::EMPTY),
+        faces: Span::EMPTY,
+        edges: Span::EMPTY,
+        elements: Span::EMPTY,
+    }
+}
+
+impl RowSpans {
+    /// Returns whether rows name features.
+    pub fn are_of_features(&self) -> bool {
+        !matches!(self, RowSpans::Pairs(_))
+    }
+
+    /// Returns how many rows there is room for.
+    pub fn room(&self) -> usize {
+        fn room<T: Ordered>(rows: &AnswerRows<T>) -> usize {
+            let listed = if rows.ordered.is_empty() {
+                rows.first.room() + rows.second.room()
+            } else {
+                rows.ordered.len()
+            };
+            listed as usize
+        }
+        match self {
+            RowSpans::Pairs(rows) => room(rows),
+            RowSpans::Contacts(rows) => room(rows),
+            RowSpans::Near(rows) => room(rows),
         }
     }
 }

@@ -4,12 +4,13 @@
 mod bound;
 mod steps;
 
+use super::answer::rows_of;
 use super::exclude::Kept;
 use super::features::Features;
 use super::rungs::Rungs;
 use super::start::StartCheck;
 use super::turning::Turning;
-use super::{AnswerLists, Capacities, Narrow, NarrowContext, growable};
+use super::{AnswerLists, Capacities, Narrow, NarrowContext, RowSpans, growable};
 use crate::contacts::Entries;
 use crate::device::{Ahead, Buffer, Device};
 use crate::error::Error;
@@ -25,7 +26,7 @@ use crate::query::{self, Certified, ContinuousSolver, Query};
 use crate::scene::Body;
 use nearmiss_kernels::abi::rows::code;
 use nearmiss_kernels::abi::{
-    BodyTolerance, Counter, CullArgs, Hit, Pair, SolveArgs, Span, counter, earliest,
+    BodyTolerance, Counter, Counters, CullArgs, Hit, Pair, SolveArgs, Span, counter, earliest,
 };
 use steps::Step;
 
@@ -376,6 +377,12 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
         let lists = [&self.vf_hits, &self.ee_hits];
         let hits = Hits::of(&lists, self.ordered.as_ref(), counters)?;
         Ok(Listed::Hits { hits, certified: self.is_certified() })
+    }
+
+    fn rows(&self, counters: Counters) -> Option<RowSpans> {
+        let lists = [&self.vf_hits, &self.ee_hits];
+        let rows = || RowSpans::Contacts(rows_of(&lists, self.ordered.as_ref(), counters));
+        self.earliest.is_none().then(rows)
     }
 
     fn answer(&self, features: &Features) -> AnswerLists {

@@ -1,7 +1,8 @@
 //! Triangles at one time: their lists, and the launches from triangle pairs to those that meet.
 
+use super::answer::rows_of;
 use super::exclude::exclude_triangles;
-use super::{AnswerLists, Features, Narrow, NarrowContext, growable};
+use super::{AnswerLists, Features, Narrow, NarrowContext, RowSpans, growable};
 use crate::contacts::Entries;
 use crate::device::{Ahead, Device};
 use crate::error::Error;
@@ -14,7 +15,7 @@ use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
 use crate::query::TriangleTest;
 use nearmiss_kernels::abi::{
-    DiscreteArgs, DiscreteFlags, Output, Pair, PlacedArgs, Positions, Span, counter,
+    Counters, DiscreteArgs, DiscreteFlags, Output, Pair, PlacedArgs, Positions, Span, counter,
 };
 use nearmiss_kernels::entry::{narrow_exact_placed, narrow_filter_placed};
 use nearmiss_kernels::stage::narrow::certain::LANES_A_PAIR;
@@ -201,6 +202,10 @@ impl<R: Precision> Narrow<R> for DiscreteNarrow {
 
     fn gather(&self, counters: &Counts) -> Result<Listed<'_>, Error> {
         Ok(Listed::Pairs(Hits::of(&[&self.contacts], self.ordered.as_ref(), counters)?))
+    }
+
+    fn rows(&self, counters: Counters) -> Option<RowSpans> {
+        Some(RowSpans::Pairs(rows_of(&[&self.contacts], self.ordered.as_ref(), counters)))
     }
 
     fn answer(&self, _: &Features) -> AnswerLists {

@@ -14,7 +14,7 @@ mod rungs;
 mod start;
 mod turning;
 
-pub use answer::AnswerLists;
+pub use answer::{AnswerLists, RowSpans};
 pub use capacities::Capacities;
 pub use continuous::ContinuousNarrow;
 pub use discrete::DiscreteNarrow;
@@ -154,6 +154,11 @@ pub trait Narrow<R: Precision>: Send {
 
     /// Returns the place of the answer.
     fn answer(&self, features: &Features) -> AnswerLists;
+
+    /// Returns the rows for kernels that follow; `None` if there are none of pairs.
+    fn rows(&self, _: Counters) -> Option<RowSpans> {
+        None
+    }
 }
 
 /// Returns the narrow phase of a query, with room for `few` of its candidates at first.

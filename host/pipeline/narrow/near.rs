@@ -1,8 +1,9 @@
 //! Features at one time: their lists, and the launches from triangle pairs to those within a
 //! distance.
 
+use super::answer::rows_of;
 use super::features::Features;
-use super::{AnswerLists, Narrow, NarrowContext, growable};
+use super::{AnswerLists, Narrow, NarrowContext, RowSpans, growable};
 use crate::contacts::Entries;
 use crate::device::{Ahead, Buffer, Device};
 use crate::error::Error;
@@ -15,7 +16,7 @@ use crate::pipeline::typed::{Hits, Listed};
 use crate::pipeline::{launch, purpose};
 use crate::query::Query;
 use nearmiss_kernels::abi::{
-    BodyTolerance, Counter, NearArgs, NearExcludingArgs, NearHit, Span, ThickNearArgs, counter,
+    BodyTolerance, Counter, Counters, NearArgs, NearExcludingArgs, NearHit, Span, ThickNearArgs, counter,
 };
 
 /// A step of the phase.
@@ -151,6 +152,10 @@ impl<R: Precision> Narrow<R> for NearNarrow {
     fn gather(&self, counters: &Counts) -> Result<Listed<'_>, Error> {
         let lists = [&self.vf_hits, &self.ee_hits];
         Ok(Listed::Near(Hits::of(&lists, self.ordered.as_ref(), counters)?))
+    }
+
+    fn rows(&self, counters: Counters) -> Option<RowSpans> {
+        Some(RowSpans::Near(rows_of(&[&self.vf_hits, &self.ee_hits], self.ordered.as_ref(), counters)))
     }
 
     fn answer(&self, features: &Features) -> AnswerLists {

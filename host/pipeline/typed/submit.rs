@@ -4,10 +4,11 @@
 use super::TypedPipeline;
 use super::query::QueryMemory;
 use super::scene::SceneMemory;
-use crate::contacts::{DeviceAnswer, DeviceList};
+use crate::contacts::{DeviceAnswer, DeviceExtras, DeviceList};
 use crate::device::{Buffer, Replay};
 use crate::error::Error;
 use crate::pipeline::counts::Counts;
+use crate::pipeline::extras::{Extras, Inputs, missing};
 use crate::pipeline::layout::Offsets;
 use crate::pipeline::list::GrowableOutput;
 use crate::pipeline::precision::Precision;
@@ -35,6 +36,8 @@ pub struct Submitted {
     pub rooms: Buffer<Room>,
     /// Status of its answer: whether it is whole, and its length.
     pub status: Buffer<FrameStatus>,
+    /// Parts that are made on request.
+    extras: Option<Extras>,
 }
 
 /// A pipeline that takes submissions.
@@ -43,12 +46,13 @@ pub trait Submits {
     /// From then on the lists do not grow until the next
     /// [`Pipeline::frame`](super::Pipeline::frame). Returns whether that submission had room for
     /// all. If not, its lists have grown, it is not prepared, and each query needs another frame.
+    /// Answers that can have them get the `wanted` parts.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] if a walk needs the host, or if the last placing read host
-    /// memory. [`Error::OutOfMemory`] and [`Error::AnswerTooLarge`] if a list could not grow.
+    /// [`Error::InvalidArgument`] if a walk needs the host, if the last placing read host memory, or
+    /// if no answer can have a wanted part. [`Error::OutOfMemory`] and [`Error::AnswerTooLarge`] if a list could not grow.
     /// Device errors. It is not prepared then.
-    fn prepare(&mut self, queries: &[usize]) -> Result<bool, Error>;
+    fn prepare(&mut self, queries: &[usize], wanted: &DeviceExtras) -> Result<bool, Error>;
     /// Returns whether it is prepared.
     fn is_prepared(&self) -> bool;
     /// Submits the queries: positions are read again from the same addresses.
@@ -85,7 +89,7 @@ impl<R: Precision> Submits for TypedPipeline<R> {
         self.scene.vertices.poses()
     }
 
-    fn prepare(&mut self, queries: &[usize]) -> Result<bool, Error> {
+    fn prepare(&mut self, queries: &[usize], wanted: &DeviceExtras) -> Result<bool, Error> {
         let refused = |what: &str, advice: &str| {
             Err(Error::InvalidArgument { what: what.to_owned(), advice: advice.to_owned() })
         };
@@ -107,7 +111,18 @@ impl<R: Precision> Submits for TypedPipeline<R> {
                 ordering.prepare(&self.scene.device)?;
             }
             let rooms = device.upload(&self.queries[query].rooms(&mut self.scene))?;
-            submitted.push(Submitted { query, rooms, status: device.buffer(1)? });
+            let own = &self.queries[query];
+            let rows = own.narrow.rows(own.counters.counters());
+            let extras = rows.map(|rows| Extras::new(&self.scene.device, wanted, &own.layout, &rows));
+            let extras = extras.transpose()?.flatten();
+            submitted.push(Submitted { query, rooms, status: device.buffer(1)?, extras });
+        }
+        let made = submitted.iter().filter_map(|own| own.extras.as_ref());
+        if let Some(part) = missing(wanted, &made.collect::<Vec<_>>()) {
+            return refused(
+                &format!("{part} in device memory, of queries that have none"),
+                "prepare a near or a continuous query too, or leave this part out",
+            );
         }
         let mut unseen = device.buffer(seen::COUNT as usize)?;
         unseen.clear()?;
@@ -173,7 +188,11 @@ impl<R: Precision> Submits for TypedPipeline<R> {
         let lists = own.narrow.answer(&self.scene.features);
         let list = |&(address, room): &(u64, usize)| DeviceList { address, room };
         let starts = own.layout.starts.iter().map(Offsets::starts);
+        let extras = submitted.extras.as_ref();
         Some(DeviceAnswer {
+            geometry: extras.and_then(Extras::geometry),
+            least_by_vertex: extras.and_then(Extras::least),
+            grouped: extras.map_or(Vec::new(), Extras::groups),
             entries: lists.entries,
             lists: lists.lists.iter().map(list).collect(),
             is_ordered: lists.is_ordered,
@@ -208,14 +227,14 @@ impl<R: Precision> TypedPipeline<R> {
 
     /// Launches the queries, after the placing, and the status of each.
     fn enqueue(&mut self) -> Result<(), Error> {
-        let Some(submission) = &self.submission else { return Ok(()) };
+        let Some(submission) = &mut self.submission else { return Ok(()) };
         let scene = &mut self.scene;
         let seen = scene.vertices.seen_span();
         let seen = if seen.is_empty() { submission.unseen.span() } else { seen };
         scene.vertices.again(&scene.device)?;
         scene.is_submitting = true;
         let queries = &mut self.queries;
-        let enqueued = submission.queries.iter().try_for_each(|submitted| {
+        let enqueued = submission.queries.iter_mut().try_for_each(|submitted| {
             let own = &mut queries[submitted.query];
             if !scene.vertices.is_ready(own.is_at_rest()) {
                 scene.vertices.ready(&scene.device)?;
@@ -244,7 +263,7 @@ impl<R: Precision> QueryMemory<R> {
     fn enqueue(
         &mut self,
         scene: &mut SceneMemory<R>,
-        submitted: &Submitted,
+        submitted: &mut Submitted,
         seen: Span<u64>,
     ) -> Result<(), Error> {
         scene.broads[self.broad].phase.set_growth(self.growth(scene.vertices.turns()));
@@ -256,6 +275,10 @@ impl<R: Precision> QueryMemory<R> {
             .try_for_each(|stage| self.run(scene, stage))?;
         scene.device.join();
         let (lists, all) = (self.narrow.answer(&scene.features), self.counters.counters());
+        if let (Some(extras), Some(rows)) = (&mut submitted.extras, self.narrow.rows(all)) {
+            let ((frames, _, faces), edges) = (scene.positions_of(self), lists.edges);
+            extras.run::<R>(&Inputs { device: &scene.device, rows, frames, faces, edges })?;
+        }
         let count = |which: Option<&Counter>| which.map_or(Span::EMPTY, |&which| all.word(which));
         let args = StatusArgs {
             counters: all,

@@ -27,7 +27,7 @@ fn short(device: &Device) -> List<Pair> {
 /// The same, prepared. Then its list of pairs gets too little room, which the status must show.
 fn prepared(device: &Device) -> TypedPipeline<f32> {
     let (mut pipeline, at) = answered(device);
-    assert!(pipeline.prepare(&[at]).expect("prepared"));
+    assert!(pipeline.prepare(&[at], &DeviceExtras::default()).expect("prepared"));
     pipeline.scene.pairs = short(device);
     let rooms = device.upload(&pipeline.queries[at].rooms(&mut pipeline.scene)).expect("memory");
     pipeline.submission.as_mut().expect("prepared").queries[0].rooms = rooms;
@@ -42,11 +42,11 @@ fn a_preparation_whose_submission_is_short_is_none() {
     let (mut pipeline, at) = answered(&device);
     let demand = pipeline.scene.pairs.demand(&pipeline.queries[at].last);
     pipeline.scene.pairs = short(&device);
-    assert!(!pipeline.prepare(&[at]).expect("no error"));
+    assert!(!pipeline.prepare(&[at], &DeviceExtras::default()).expect("no error"));
     assert!(!pipeline.is_prepared() && pipeline.submit().is_err());
     assert!(pipeline.scene.pairs.capacity() as u64 >= demand);
     pipeline.frame(at).expect("a frame");
-    assert!(pipeline.prepare(&[at]).expect("prepared") && pipeline.is_prepared());
+    assert!(pipeline.prepare(&[at], &DeviceExtras::default()).expect("prepared") && pipeline.is_prepared());
     assert_eq!(reported(&mut pipeline), (0, false));
 }
 
@@ -62,12 +62,12 @@ fn a_preparation_without_memory_returns_the_error() {
     let limit = device.bytes().0 + demand * size_of::<Pair>() as u64;
     assert!(demand > 200, "{demand}");
     let limited = device.clone().with_memory_limit(limit);
-    let error = pipeline.prepare(&[at]).expect_err("no memory");
+    let error = pipeline.prepare(&[at], &DeviceExtras::default()).expect_err("no memory");
     assert!(matches!(error, Error::OutOfMemory { .. }), "{error}");
     assert!(!pipeline.is_prepared());
     let _ = limited.with_memory_limit(u64::MAX);
     pipeline.frame(at).expect("a frame");
-    assert!(pipeline.prepare(&[at]).expect("prepared") && pipeline.is_prepared());
+    assert!(pipeline.prepare(&[at], &DeviceExtras::default()).expect("prepared") && pipeline.is_prepared());
 }
 
 /// A list that a submission found too short has grown when `collect` says so.

@@ -4,6 +4,7 @@
 
 #[macro_use]
 mod args;
+mod answer;
 mod bodies;
 pub mod counter;
 pub mod earliest;
@@ -25,6 +26,7 @@ mod status;
 mod tile;
 mod turns;
 
+pub use answer::*;
 pub use args::*;
 pub use bodies::*;
 pub use counter::{Counter, Counters, MESH_LEVELS, ROUNDS};

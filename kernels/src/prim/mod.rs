@@ -14,6 +14,7 @@
 //! | [`approach`] | whether two features come nearer than at the start | exact, or undecided |
 //! | [`near`] | distance of two features at rest | proven bounds |
 //! | [`nearest`] | distance of two triangles at rest | proven bounds |
+//! | [`geometry`] | weights, nearest points and normal of two features | as [`near`] |
 //!
 //! [`stencil`] names the fifteen vertex/face and edge/edge tests of two triangles. [`sweep`]
 //! selects those whose boxes meet. [`direction`] first leaves out triangles that need none of them.
@@ -27,6 +28,7 @@ pub mod cubic;
 pub mod direction;
 pub mod exact;
 mod flat;
+pub mod geometry;
 pub mod inclusion;
 pub mod isolate;
 pub mod moller;

@@ -23,6 +23,7 @@
 //! | [`balance`] | the work queues of the paper's walk | the same units, evenly cut |
 //! | [`narrow`] | candidates, positions | contacts |
 //! | [`order`] | contacts | rows of the answer, in canonical order, on a GPU |
+//! | [`answer`] | contacts | geometry of rows, rows by feature: in submissions, on request |
 //! | [`status`] | counts, capacities of lists | whether the answer is complete |
 //!
 //! No stage calls another. They exchange data in memory, through [`crate::abi`]. [`traverse`] and
@@ -34,6 +35,7 @@
 //! and Manocha, "gProximity: Hierarchical GPU-based Operations for Collision and Distance Queries",
 //! 2010.
 
+pub mod answer;
 pub mod balance;
 pub mod construct;
 pub mod fit;
