@@ -77,8 +77,14 @@ pub trait Precision: Real + Send {
     type GeometryOfHits: Entry<Args = AnswerGeometryArgs<Self, Hit>>;
     /// Geometry of near pairs.
     type GeometryOfNear: Entry<Args = AnswerGeometryArgs<Self, NearHit>>;
-    /// Pairs that come nearer than at the start.
+    /// Pairs that are near at the start.
     type Approach: Entry<Args = ThickRungArgs<Self>>;
+    /// Those that come nearer than at the start, by bounds of errors.
+    type ApproachSigns: Entry<Args = ThickRungArgs<Self>>;
+    /// The same in integers, of pairs left uncertain.
+    type ApproachExact: Entry<Args = ThickRungArgs<Self>>;
+    /// Times at which others do, by advancement.
+    type ApproachAdvance: Entry<Args = ThickRungArgs<Self>>;
     /// Isolation of roots in f32.
     type Isolate32: Entry<Args = RungArgs<Self>>;
     /// Isolation of roots in f64.
@@ -147,6 +153,9 @@ impl Precision for f32 {
     type GeometryOfHits = entry::answer_geometry_hit_f32;
     type GeometryOfNear = entry::answer_geometry_near_f32;
     type Approach = entry::narrow_approach_f32;
+    type ApproachSigns = entry::narrow_approach_signs_f32;
+    type ApproachExact = entry::narrow_approach_exact_f32;
+    type ApproachAdvance = entry::narrow_approach_advance_f32;
     type Separate32 = entry::narrow_separate_f32_f32;
     type Separate64 = entry::narrow_separate_f32_f64;
     type SeparateThick = entry::narrow_separate_thick_f32;
@@ -211,6 +220,9 @@ impl Precision for f64 {
     type GeometryOfHits = entry::answer_geometry_hit_f64;
     type GeometryOfNear = entry::answer_geometry_near_f64;
     type Approach = entry::narrow_approach_f64;
+    type ApproachSigns = entry::narrow_approach_signs_f64;
+    type ApproachExact = entry::narrow_approach_exact_f64;
+    type ApproachAdvance = entry::narrow_approach_advance_f64;
     type Separate32 = entry::narrow_separate_f64_f32;
     type Separate64 = entry::narrow_separate_f64_f64;
     type SeparateThick = entry::narrow_separate_thick_f64;

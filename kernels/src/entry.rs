@@ -206,6 +206,12 @@ kernels! {
     narrow_separate_thick_f64: separate::thick::<f64, B>, [ThickRungArgs<f64>], RUNG, separate::shared_bytes(RUNG);
     narrow_approach_f32: approach::approach::<f32, B>, [ThickRungArgs<f32>], NARROW, 0;
     narrow_approach_f64: approach::approach::<f64, B>, [ThickRungArgs<f64>], NARROW, 0;
+    narrow_approach_signs_f32: approach::signs::<f32, B>, [ThickRungArgs<f32>], SPREAD, 0;
+    narrow_approach_signs_f64: approach::signs::<f64, B>, [ThickRungArgs<f64>], SPREAD, 0;
+    narrow_approach_exact_f32: approach::exact::<f32, B>, [ThickRungArgs<f32>], SPREAD, 0;
+    narrow_approach_exact_f64: approach::exact::<f64, B>, [ThickRungArgs<f64>], SPREAD, 0;
+    narrow_approach_advance_f32: approach::advance::<f32, B>, [ThickRungArgs<f32>], SPREAD, 0;
+    narrow_approach_advance_f64: approach::advance::<f64, B>, [ThickRungArgs<f64>], SPREAD, 0;
     narrow_divide: divide::divide, [DivideArgs], WIDE, 0;
     narrow_turning_features: turning::features, [TurningFeaturesArgs], turning::LANES, turning::SHARED;
     narrow_turning: turning::solve, [TurningArgs], NARROW, 0;

@@ -18,7 +18,7 @@ pub const STAGES: [(&str, &str); 10] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 105] = [
+const KERNELS: [(&str, &str); 108] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
     ("place_turns", "rotation vectors and paths of bodies that turn"),
     ("place", "poses applied, uploads put in place, other bodies at rest"),
@@ -93,7 +93,10 @@ const KERNELS: [(&str, &str); 105] = [
     ("narrow_isolate", "roots isolated, each with a certificate"),
     ("narrow_settle", "exact touching at the start"),
     ("narrow_slice", "the step in slices, and the search by boxes"),
-    ("narrow_approach", "pairs that come nearer than at the start"),
+    ("narrow_approach_signs", "those that come nearer than at the start, by bounds of errors"),
+    ("narrow_approach_exact", "the same in integers, of pairs left uncertain"),
+    ("narrow_approach_advance", "times at which others do, by advancement"),
+    ("narrow_approach", "pairs that are near at the start"),
     ("narrow_separate_thick", "supporting planes, of radii that differ"),
     ("narrow_separate", "supporting planes"),
     ("narrow_divide", "candidates of bodies that turn, and the others"),

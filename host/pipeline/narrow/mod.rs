@@ -9,6 +9,7 @@ mod discrete;
 mod distance;
 mod exclude;
 mod features;
+mod left;
 mod near;
 mod rungs;
 mod start;

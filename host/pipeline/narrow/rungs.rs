@@ -1,5 +1,6 @@
 //! The ladder of certified solvers: the rungs of a query, the lists between them, their launches.
 
+use super::left::{ADVANCING, ASKED, LEFT, Left, lists};
 use super::{Capacities, NarrowContext};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
@@ -7,10 +8,8 @@ use crate::pipeline::list::{GrowableOutput, List, Named, named};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::{launch, purpose};
 use crate::query::{Certified, CertifiedPrecision};
-use bytemuck::Pod;
 use nearmiss_kernels::abi::{
-    Begun, BodyTolerance, Counter, Hit, Listed, Output, Pair, RungArgs, RungFlags, Span, ThickRungArgs,
-    counter,
+    Begun, BodyTolerance, Hit, Listed, Output, Pair, RungArgs, RungFlags, Span, ThickRungArgs,
 };
 use nearmiss_kernels::entry::Entry;
 
@@ -34,7 +33,16 @@ enum Rung {
     SeparateThick,
     /// Before all others: features that are near at the start, if they must come nearer.
     Approach,
+    /// Whether they do, by bounds of errors.
+    ApproachSigns,
+    /// Whether they do, in integers.
+    ApproachExact,
+    /// When they do, by advancement. The solver does not need it.
+    ApproachAdvance,
 }
+
+/// The rungs that leave to the solver what approaches, in one list: that of the last of them.
+const APPROACH: [Rung; 3] = [Rung::Approach, Rung::ApproachSigns, Rung::ApproachExact];
 
 /// Returns the rungs of a solver.
 fn rungs(certified: &Certified) -> Vec<Rung> {
@@ -45,34 +53,9 @@ fn rungs(certified: &Certified) -> Vec<Rung> {
         (CertifiedPrecision::F64, false) => &[Rung::Isolate64, Rung::Slice],
         (CertifiedPrecision::Mixed, false) => &[Rung::Isolate32, Rung::Isolate64, Rung::Slice],
     };
-    let first = certified.approaching.then_some(Rung::Approach);
-    first.into_iter().chain(of_solver.iter().copied()).collect()
+    let first: &[Rung] = if certified.approaching { &APPROACH } else { &[] };
+    [first, of_solver].concat()
 }
-
-/// Lists of both kinds: a name for comparisons of machines, a name for errors, and the counter.
-type OfKinds = [(&'static str, &'static str, Counter); 2];
-
-/// The lists that rungs leave.
-const LEFT: [OfKinds; 3] = [
-    [
-        ("narrow: vf for f64", "vertex/face pairs for f64", counter::VF_ESCALATED),
-        ("narrow: ee for f64", "edge/edge pairs for f64", counter::EE_ESCALATED),
-    ],
-    [
-        ("narrow: vf for slices", "vertex/face pairs for slices", counter::VF_HARD),
-        ("narrow: ee for slices", "edge/edge pairs for slices", counter::EE_HARD),
-    ],
-    [
-        ("narrow: vf that may approach", "vertex/face pairs that may approach", counter::VF_APPROACHING),
-        ("narrow: ee that may approach", "edge/edge pairs that may approach", counter::EE_APPROACHING),
-    ],
-];
-
-/// The lists of pairs to settle. How many there are depends on the machine, so none is compared.
-const ASKED: OfKinds = [
-    ("", "vertex/face pairs to settle", counter::VF_ASKED),
-    ("", "edge/edge pairs to settle", counter::EE_ASKED),
-];
 
 impl Rung {
     /// Returns which of these lists its undecided pairs go to.
@@ -80,17 +63,16 @@ impl Rung {
         match self {
             Rung::Isolate32 | Rung::Separate32 => 0,
             Rung::Isolate64 | Rung::Settle | Rung::Slice | Rung::Separate64 | Rung::SeparateThick => 1,
-            Rung::Approach => 2,
+            Rung::ApproachExact | Rung::ApproachAdvance => 2,
+            Rung::Approach => 3,
+            Rung::ApproachSigns => 4,
         }
     }
-}
 
-/// Pairs that a rung leaves: vertex/face, edge/edge.
-enum Left {
-    /// To isolation, or to slices.
-    Pairs([List<Pair>; 2]),
-    /// With a separation: with times that are proven.
-    Begun([List<Begun>; 2]),
+    /// Returns whether it is before the solver.
+    fn is_before(self) -> bool {
+        APPROACH.contains(&self)
+    }
 }
 
 /// The rungs of a certified solver, and the lists between them; empty for another solver.
@@ -104,27 +86,14 @@ pub struct Rungs {
     /// Pairs that a long list in f64 leaves to be settled in a launch of their own; none without
     /// f64. In a query they have no room, and there is no launch, until such a list was seen.
     asked: Option<Left>,
+    /// In a query of what approaches: pairs whose distance may fall later.
+    advancing: Option<[List<Begun>; 2]>,
     /// Tolerances of bodies; empty if all pairs have the same.
     tolerances: Buffer<BodyTolerance>,
     /// The thickness of every vertex, if it differs within a body; else empty.
     radii: Buffer<f64>,
     /// The values in `tolerances`.
     held: Vec<BodyTolerance>,
-}
-
-impl Left {
-    fn capacity(&self) -> usize {
-        match self {
-            Left::Pairs([vf, ee]) => vf.capacity() + ee.capacity(),
-            Left::Begun([vf, ee]) => vf.capacity() + ee.capacity(),
-        }
-    }
-}
-
-/// Allocates lists of both kinds.
-fn lists<T: Pod>(device: &Device, names: OfKinds, capacity: [usize; 2]) -> Result<[List<T>; 2], Error> {
-    let [(_, vf, vf_counter), (_, ee, ee_counter)] = names;
-    Ok([List::new(device, vf, vf_counter, capacity[0])?, List::new(device, ee, ee_counter, capacity[1])?])
 }
 
 impl Rungs {
@@ -142,21 +111,24 @@ impl Rungs {
         let names: Vec<_> = leaving.iter().map(|rung| rung.left()).collect();
         let is_apart = certified.is_some_and(Certified::is_apart);
         let of = |rung: &Rung| {
-            if *rung == Rung::Approach {
-                lists(device, LEFT[rung.left()], capacities.survivors).map(Left::Pairs)
-            } else if is_apart {
-                lists(device, LEFT[rung.left()], capacities.left).map(Left::Begun)
+            let is_begun = is_apart && !rung.is_before();
+            let is_last = *rung == Rung::ApproachExact;
+            let capacity = if is_last { capacities.survivors } else { capacities.left };
+            if is_begun {
+                lists(device, LEFT[rung.left()], capacity).map(Left::Begun)
             } else {
-                lists(device, LEFT[rung.left()], capacities.left).map(Left::Pairs)
+                lists(device, LEFT[rung.left()], capacity).map(Left::Pairs)
             }
         };
         let left = leaving.iter().map(of).collect::<Result<_, Error>>()?;
         let asked = || lists(device, ASKED, capacities.asked).map(Left::Pairs);
         let asked = rungs.contains(&Rung::Isolate64).then(asked).transpose()?;
+        let advances = rungs.contains(&Rung::Approach);
+        let advancing = advances.then(|| lists(device, ADVANCING, capacities.left)).transpose()?;
         let tolerances = device.of(purpose::TOLERANCES).buffer(0)?;
         let radii = device.of(purpose::RADII).buffer(0)?;
         let certified = certified.copied().unwrap_or_default();
-        Ok(Rungs { certified, rungs, left, names, asked, tolerances, radii, held: Vec::new() })
+        Ok(Rungs { certified, rungs, left, names, asked, advancing, tolerances, radii, held: Vec::new() })
     }
 
     /// Makes them the one rung of vertices whose thickness differs within a body: in f64, to the last
@@ -166,7 +138,7 @@ impl Rungs {
     /// Device errors.
     pub fn thicken(&mut self, device: &Device, radii: &[f64]) -> Result<(), Error> {
         self.radii = device.of(purpose::RADII).upload(radii)?;
-        self.rungs.retain(|rung| *rung == Rung::Approach);
+        self.rungs.retain(|rung| rung.is_before());
         self.left.truncate(self.rungs.len());
         self.names.truncate(self.rungs.len());
         self.rungs.push(Rung::SeparateThick);
@@ -205,23 +177,20 @@ impl Rungs {
 
     /// Returns the lists that the rungs fill.
     pub fn lists(&mut self) -> impl Iterator<Item = &mut dyn GrowableOutput> {
-        self.left.iter_mut().chain(&mut self.asked).flat_map(|left| -> [&mut dyn GrowableOutput; 2] {
-            match left {
-                Left::Pairs([vf, ee]) => [vf, ee],
-                Left::Begun([vf, ee]) => [vf, ee],
-            }
-        })
+        let advancing = self.advancing.iter_mut().flatten().map(|list| list as &mut dyn GrowableOutput);
+        self.left.iter_mut().chain(&mut self.asked).flat_map(Left::growable).chain(advancing)
     }
 
     /// Returns the lists, with names.
     pub fn between(&self) -> impl Iterator<Item = Named<'_>> {
-        self.names.iter().zip(&self.left).flat_map(|(&at, left)| {
-            let [vf_name, ee_name] = LEFT[at].map(|(name, ..)| name);
-            match left {
-                Left::Pairs([vf, ee]) => [named(vf_name, vf), named(ee_name, ee)],
-                Left::Begun([vf, ee]) => [named(vf_name, vf), named(ee_name, ee)],
-            }
-        })
+        let advancing = self.advancing.iter().flatten().zip(ADVANCING.map(|(name, ..)| name));
+        let advancing = advancing.map(|(list, name)| named(name, list));
+        let left = self
+            .names
+            .iter()
+            .zip(&self.left)
+            .flat_map(|(&at, left)| left.named(LEFT[at].map(|(name, ..)| name)));
+        left.chain(advancing)
     }
 
     /// Launches the rungs, the first one over `first`. For a sample it launches only the rungs that
@@ -258,21 +227,32 @@ impl Rungs {
             listed
         };
         let asked = self.asked.as_ref().filter(|_| !sample);
-        let of_asked = |kind: usize| match asked {
+        // A second list that it leaves: to be settled, or for the next rung before the solver.
+        let second = |of: Option<&Left>, kind: usize| match of {
             Some(Left::Pairs(of)) => of[kind].output(given.counters),
             _ => Output::EMPTY,
         };
-        let run = |rung, before: Option<&Left>, left| {
+        let run_over = |capacity, rung: Rung, before: Option<&Left>, [left, other]: [Option<&Left>; 2]| {
             let narrow = self.certified.precision == CertifiedPrecision::F32;
             let everything = narrow || rung == Rung::Isolate64;
+            let listed = |kind: usize| match (&self.advancing, rung) {
+                (Some(of), Rung::ApproachSigns | Rung::ApproachExact) => {
+                    Listed { begun: of[kind].output(given.counters), ..listed(before, left, kind) }
+                }
+                (Some(of), Rung::ApproachAdvance) => {
+                    let begun = of[kind].output(given.counters);
+                    Listed { pairs: Output::EMPTY, begun, ..listed(before, left, kind) }
+                }
+                _ => listed(before, left, kind),
+            };
             let args = RungArgs {
                 frames: given.frames,
                 faces: given.faces,
                 edges,
-                vf: listed(before, left, 0),
-                ee: listed(before, left, 1),
-                vf_asked: of_asked(0),
-                ee_asked: of_asked(1),
+                vf: listed(0),
+                ee: listed(1),
+                vf_asked: second(other, 0),
+                ee_asked: second(other, 1),
                 earliest,
                 counters: given.counters,
                 tolerances: self.tolerances.span(),
@@ -283,20 +263,37 @@ impl Rungs {
                     | RungFlags::UNLESS_MARKED.when(sample && before.is_some()),
                 pad: 0,
             };
-            let capacity = before.map_or(first[0].capacity() + first[1].capacity(), Left::capacity);
             start::<R>(rung, given.device, capacity, (&args, self.radii.span()))
         };
+        let run = |rung, before: Option<&Left>, outputs| {
+            let capacity = before.map_or(first[0].capacity() + first[1].capacity(), Left::capacity);
+            run_over(capacity, rung, before, outputs)
+        };
+        let to_solver = self.rungs.iter().position(|&rung| rung == Rung::ApproachExact);
+        let to_solver = to_solver.and_then(|at| self.left.get(at));
         let mut before = None;
         for (at, &rung) in self.rungs.iter().enumerate() {
-            if sample && !matches!(rung, Rung::Approach | Rung::Isolate32 | Rung::Isolate64) {
+            if sample && !rung.is_before() && !matches!(rung, Rung::Isolate32 | Rung::Isolate64) {
                 break;
             }
             let left = self.left.get(at);
-            run(rung, before, left)?;
+            let outputs = match rung {
+                Rung::Approach | Rung::ApproachSigns => [to_solver, left],
+                Rung::ApproachExact => [left, None],
+                _ => [left, asked],
+            };
+            run(rung, before, outputs)?;
             if rung == Rung::Isolate64 && asked.is_some_and(|asked| asked.capacity() > 0) {
-                run(Rung::Settle, asked, left)?;
+                run(Rung::Settle, asked, [left, asked])?;
+            }
+            if let (Rung::ApproachExact, Some([vf, ee])) = (rung, &self.advancing) {
+                let capacity = vf.capacity() + ee.capacity();
+                given.device.beside(|| run_over(capacity, Rung::ApproachAdvance, None, [None; 2]))?;
             }
             before = left;
+        }
+        if self.advancing.is_some() {
+            given.device.join();
         }
         Ok(())
     }
@@ -308,27 +305,26 @@ fn start<R: Precision>(
     capacity: usize,
     (args, radii): (&RungArgs<R>, Span<f64>),
 ) -> Result<(), Error> {
+    let thick = || ThickRungArgs { rung: *args, radii };
     match rung {
         Rung::Isolate32 => launch::striding::<R::Isolate32>(device, capacity, args),
         // All warps that run at once share the pairs; there are few.
-        Rung::Isolate64 => {
-            let lanes = R::Isolate64::LANES as usize;
-            launch::at_once::<R::Isolate64>(device, capacity.saturating_mul(lanes), args)
-        }
+        Rung::Isolate64 => spread::<R::Isolate64>(device, capacity, args),
         Rung::Settle => launch::striding::<R::Settle>(device, capacity, args),
         // A block per pair; there are few.
-        Rung::Slice => {
-            launch::at_once::<R::Slice>(device, capacity.saturating_mul(R::Slice::LANES as usize), args)
-        }
+        Rung::Slice => spread::<R::Slice>(device, capacity, args),
         Rung::Separate32 => launch::at_once::<R::Separate32>(device, capacity, args),
         Rung::Separate64 => launch::at_once::<R::Separate64>(device, capacity, args),
-        Rung::Approach => {
-            let args = ThickRungArgs { rung: *args, radii };
-            launch::striding::<R::Approach>(device, capacity, &args)
-        }
-        Rung::SeparateThick => {
-            let args = ThickRungArgs { rung: *args, radii };
-            launch::at_once::<R::SeparateThick>(device, capacity, &args)
-        }
+        Rung::Approach => launch::striding::<R::Approach>(device, capacity, &thick()),
+        // All warps that run at once share the pairs; there are few.
+        Rung::ApproachSigns => spread::<R::ApproachSigns>(device, capacity, &thick()),
+        Rung::ApproachExact => spread::<R::ApproachExact>(device, capacity, &thick()),
+        Rung::ApproachAdvance => spread::<R::ApproachAdvance>(device, capacity, &thick()),
+        Rung::SeparateThick => launch::at_once::<R::SeparateThick>(device, capacity, &thick()),
     }
+}
+
+/// Launches as many blocks as run at once, for few pairs that are spread over them.
+fn spread<E: Entry>(device: &Device, capacity: usize, args: &E::Args) -> Result<(), Error> {
+    launch::at_once::<E>(device, capacity.saturating_mul(E::LANES as usize), args)
 }

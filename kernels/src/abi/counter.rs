@@ -106,6 +106,18 @@ counters! { 0;
     VF_ESCALATED,
     /// Edge/edge pairs that f32 leaves to f64.
     EE_ESCALATED,
+    /// Vertex/face pairs that are near at the start, in a query of what approaches.
+    VF_BEGIN_NEAR,
+    /// Edge/edge pairs that are near at the start.
+    EE_BEGIN_NEAR,
+    /// Vertex/face pairs of them that bounds of errors do not decide.
+    VF_UNBOUNDED,
+    /// Edge/edge pairs of them that bounds do not decide.
+    EE_UNBOUNDED,
+    /// Vertex/face pairs of them whose distance may fall later.
+    VF_ADVANCING,
+    /// Edge/edge pairs of them whose distance may fall later.
+    EE_ADVANCING,
     /// Vertex/face pairs that are left for the solver by a query of what approaches.
     VF_APPROACHING,
     /// Edge/edge pairs that it leaves.

@@ -184,7 +184,8 @@ arguments! {
         /// Pairs; empty if `begun` has them.
         pairs: Output<Pair>,
         /// With a separation: pairs with the time that f32 has proven. Out in f32, in in f64; empty
-        /// if f64 is alone.
+        /// if f64 is alone. Out of `narrow_approach_signs` and `_exact`, in of `_advance`: pairs with
+        /// a time before which they do not come nearer.
         begun: Output<Begun>,
         /// Out: contacts and undecided pairs; empty if only the earliest is wanted.
         hits: Output<Hit>,
@@ -204,9 +205,10 @@ arguments! {
         vf: Listed,
         /// Edge/edge pairs.
         ee: Listed,
-        /// Out: vertex/face pairs to settle, from a long list in f64.
+        /// Out: vertex/face pairs to settle, from a long list in f64. Or those for the next launch of
+        /// `narrow_approach`.
         vf_asked: Output<Pair>,
-        /// Out: edge/edge pairs to settle.
+        /// Out: edge/edge pairs to settle, or for that launch.
         ee_asked: Output<Pair>,
         /// Out: the least toi so far, the words of [`super::earliest`]; or empty.
         earliest: Span<u64>,
@@ -223,6 +225,8 @@ arguments! {
         pad: u32,
     }
     /// `narrow_separate_thick`: the pairs that come within a separation and their radii.
+    /// `narrow_approach`, `narrow_approach_signs`, `narrow_approach_exact`,
+    /// `narrow_approach_advance`: those that come nearer than at the start.
     ThickRungArgs<R: Real> {
         /// Pairs, lists, parameters.
         rung: RungArgs<R>,

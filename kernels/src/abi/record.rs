@@ -106,7 +106,8 @@ const _: () = assert!(size_of::<Pair>() == 8);
 pub struct Begun {
     /// The pair.
     pub pair: Pair,
-    /// The bits of a time in [0, 1], an f64: the pair is farther apart than the separation before it.
+    /// The bits of a time in [0, 1], an f64: the pair is farther apart than the separation before it;
+    /// or not nearer than at the start.
     pub from: u64,
 }
 const _: () = assert!(size_of::<Begun>() == 16);

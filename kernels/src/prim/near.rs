@@ -168,6 +168,13 @@ pub fn shortest<const TRIANGLE: bool>(of: [Vec3<f64>; 3]) -> f64 {
     Real::sqrt(nearest::<f64, TRIANGLE>(of).squared)
 }
 
+/// The weights of `p` and `q` at the nearest point of two features, as computed. Those at an end of a
+/// side are 0 or 1; on a triangle's side from `p` to `q`, that of `p` is 1 less that of `q`, rounded.
+#[inline(always)]
+pub fn weights(of: [Vec3<f64>; 3], is_face: bool) -> [f64; 2] {
+    if is_face { nearest::<f64, true>(of).at } else { nearest::<f64, false>(of).at }
+}
+
 /// The nearest point, of differences that are multiplied by `up` so that their squares are numbers.
 struct Scaled {
     /// The largest component of the multiplied differences.

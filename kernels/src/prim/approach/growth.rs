@@ -17,7 +17,7 @@ use crate::math::tolerance::{Tolerance, U64};
 use crate::math::{Real, Vec3};
 use crate::prim::isolate::pair::most;
 
-impl<R: Real> Motion<'_, R> {
+impl Motion<'_, f64> {
     /// The time until which all control vectors are beyond the plane at the start. Not after it.
     #[inline(always)]
     pub(super) fn beyond_until(&self, nearest: Nearest) -> f64 {

@@ -7,7 +7,8 @@
 //! Differences of two features' points are a convex hull of control vectors, each linear in time
 //! ([`super::isolate`]). Let `p` be its point nearest to the origin at the start: `|p| = d`. Then the
 //! whole hull is beyond the plane through `p` at right angles to it. `p` is at a corner, along a side,
-//! or inside; each case has its forms ([`forms`]), and their signs are exact ([`numbers`]).
+//! or inside; each case has its forms ([`forms`]). Their signs are exact: those that a bound of the
+//! error leaves open ([`numbers`]) are found in integers ([`integers`]).
 //!
 //! - *Never.* All control vectors are beyond the plane at the end, too. They are linear in time, so
 //!   they are at all times, and the distance is never below `d`. This decides features at rest,
@@ -22,21 +23,38 @@
 //! At `d = 0` the plane is that of the hull. No distance is below 0, and a point has no side. Features
 //! that touch are in no contact if they stay on one side of the hull, either one. Else they are
 //! undecided: they may part and touch again.
+//!
+//! # In parts
+//!
+//! A GPU takes pairs in four launches: [`Motion::begin`] for all, [`Motion::by_bounds`] for those
+//! that are near at the start, [`Motion::by_integers`] for those that it leaves, [`Motion::advance`]
+//! for those whose distance may fall later. [`Motion::course`] is the four in sequence, so the course
+//! of a pair is a function of the pair. A sign by a bound is the exact one: integers would decide the
+//! same. They do not hold every pair, so bounds always come first.
+//!
+//! *The nearest point by bounds.* The computed nearest point suggests a corner, a side or the inside.
+//! If all other corners are strictly beyond its plane and it is strictly between its ends, it is the
+//! one nearest point, and there is no other way to name it. So the search would find the same.
 
 pub mod forms;
 mod growth;
+pub mod integers;
+mod nearest;
 pub mod numbers;
+mod wide;
 
 use super::isolate::Pair;
 use super::isolate::advance::{Advance, Distance};
 use super::isolate::ladder::advanced;
 use super::isolate::pair::most;
 use super::isolate::thick::{is_even, radii_of_nearest, shortest_of};
-use crate::math::Real;
 use crate::math::tolerance::{DISTANCE_CERTAIN, DISTANCE_ERROR, Tolerance};
+use crate::math::{Real, Vec3};
 use crate::prim::inclusion::{Params, Verdict};
-use forms::{Form, Place, end, start};
-use numbers::{Bounded, Rounded, Vertices, exact_sign};
+use forms::{Form, end};
+use integers::{Exact, Vertices};
+use nearest::{ByBounds, Nearest, Signs};
+use numbers::{Bounded, Rounded};
 
 /// The course of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,13 +67,30 @@ pub enum Course {
     Known(Verdict),
 }
 
-/// Where the hull is nearest to the origin at the start.
+/// The result of the first part.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Nearest {
-    Corner(u32),
-    Side([u32; 2]),
-    /// With the sign of the hull's height.
-    Inside(i32),
+pub enum Begin {
+    /// Beyond the separation: the solver has it.
+    Beyond,
+    /// Within it.
+    Within(Within),
+}
+
+/// The result of signs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Decided {
+    /// The course.
+    Course(Course),
+    /// The distance may fall from this time on: features advance from there.
+    From(f64),
+}
+
+/// A pair within the separation at the start. Lengths are in the units of control vectors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Within {
+    distance: Bounds,
+    /// Not above the separation and the radii.
+    within: f64,
 }
 
 /// When the distance may fall below that at the start.
@@ -76,7 +111,7 @@ pub struct Motion<'a, R> {
 }
 
 /// Bounds of the distance at the start, in the units of control vectors.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Bounds {
     least: f64,
     most: f64,
@@ -87,8 +122,20 @@ impl<R: Real> Motion<'_, R> {
     /// largest is part of the separation if all are the same.
     #[inline(always)]
     pub fn course(&self, radii: [f64; 4], p: &Params) -> Course {
+        let Begin::Within(near) = self.begin(radii, p) else { return Course::Solver };
+        let vertices = self.vertices.map(|ends| ends.map(Vec3::wide));
+        let motion = Motion { vertices: &vertices, pair: self.pair };
+        match motion.by_bounds(&near, p).unwrap_or_else(|| motion.by_integers(&near, p)) {
+            Decided::Course(course) => course,
+            Decided::From(from) => motion.advance(from, &near, p),
+        }
+    }
+
+    /// The first part: whether the pair is within the separation at the start.
+    #[inline(always)]
+    pub fn begin(&self, radii: [f64; 4], p: &Params) -> Begin {
         if !self.pair.finite {
-            return Course::Solver;
+            return Begin::Beyond;
         }
         let radii = radii.map(|radius| self.pair.scaled(radius));
         let (distance, radius) = self.distance(radii);
@@ -97,26 +144,16 @@ impl<R: Real> Motion<'_, R> {
         let beyond = (separation + largest(radii)) * f64::INCLUSION_UP;
         // If radii differ, features can come within a larger one while their distance stays.
         if distance.least > beyond || (!is_even(radii) && distance.most > within) {
-            return Course::Solver;
+            return Begin::Beyond;
         }
-        match self.fall(distance) {
-            Fall::Never => Course::Never,
-            Fall::AtOnce => Course::Solver,
-            Fall::NotBefore(from) if from >= p.end => Course::Never,
-            Fall::NotBefore(from) if from > 0.0 => {
-                let verdict = self.advance(from, distance, within, p);
-                if verdict.is_separated() { Course::Never } else { Course::Known(verdict) }
-            }
-            Fall::NotBefore(_) => Course::Known(Verdict::undecided(0.0, p.end, 0, false)),
-        }
+        Begin::Within(Within { distance, within })
     }
 
     /// Bounds of the distance at the start, and the least radius of points that may be nearest. Radii
     /// are in the units of control vectors.
     #[inline(always)]
     fn distance(&self, radii: [f64; 4]) -> (Bounds, f64) {
-        let (w, [a, b], is_face) = (self.pair.w[0][0], self.pair.edges, self.pair.is_face);
-        let of = if is_face { [w * -1.0, a[0], b[0]] } else { [w, a[0], b[0] * -1.0] };
+        let (of, is_face) = (self.differences(), self.pair.is_face);
         let reach = most(of[0]).greater(most(of[1])).greater(most(of[2]));
         let distance = shortest_of(of, is_face);
         let radius = if is_even(radii) {
@@ -130,25 +167,50 @@ impl<R: Real> Motion<'_, R> {
         (Bounds { least, most: most * f64::INCLUSION_UP }, radius)
     }
 
-    /// When the distance may first fall below that at the start. Out of line: few pairs come here.
+    /// The differences that [`super::near`] measures.
+    #[inline(always)]
+    fn differences(&self) -> [Vec3<f64>; 3] {
+        let (w, [a, b]) = (self.pair.w[0][0], self.pair.edges);
+        if self.pair.is_face { [w * -1.0, a[0], b[0]] } else { [w, a[0], b[0] * -1.0] }
+    }
+}
+
+// For positions in f64, into which those in f32 are copied: one code for both. Out of line, as few
+// pairs come here.
+impl Motion<'_, f64> {
+    /// The second part, for pairs within the separation: what bounds of errors decide.
     #[inline(never)]
-    fn fall(&self, distance: Bounds) -> Fall {
-        if self.is_still() {
-            return Fall::Never;
-        }
-        self.decided(distance).unwrap_or(Fall::NotBefore(0.0))
+    pub fn by_bounds(&self, near: &Within, p: &Params) -> Option<Decided> {
+        let fall = if self.is_still() { Fall::Never } else { self.decided(&ByBounds, near.distance)? };
+        Some(fall.decides(p))
     }
 
+    /// The third part, for pairs that the second one leaves.
+    #[inline(never)]
+    pub fn by_integers(&self, near: &Within, p: &Params) -> Decided {
+        let exact = Exact::new(self.vertices, self.pair.is_face);
+        self.decided(&exact, near.distance).unwrap_or(Fall::NotBefore(0.0)).decides(p)
+    }
+
+    /// When the distance may first fall below that at the start, if all signs are known.
     #[inline(always)]
-    fn decided(&self, distance: Bounds) -> Option<Fall> {
-        let nearest = self.nearest()?;
-        if self.touches(nearest)? {
-            return self.parts().map(|parts| if parts { Fall::Never } else { Fall::NotBefore(0.0) });
-        }
+    fn decided<S: Signs>(&self, signs: &S, distance: Bounds) -> Option<Fall> {
+        let nearest = match self.suggested() {
+            Some(nearest) => nearest,
+            None if !S::SEARCHES => return None,
+            None => {
+                let nearest = self.nearest(signs)?;
+                if self.touches(signs, nearest)? {
+                    let parts = self.parts(signs)?;
+                    return Some(if parts { Fall::Never } else { Fall::NotBefore(0.0) });
+                }
+                nearest
+            }
+        };
         let (mut stays, mut comes) = (true, true);
         let mut k = 0;
         while k < self.corners() {
-            let height = self.height(nearest, end(k))?;
+            let height = self.height(signs, nearest, end(k))?;
             stays &= height >= 0;
             // Only corners that the nearest point is a mixture of.
             comes &= height < 0 || !nearest.has(k);
@@ -157,7 +219,7 @@ impl<R: Real> Motion<'_, R> {
         if stays {
             return Some(Fall::Never);
         }
-        if comes || self.rate(nearest)? < 0 {
+        if comes || self.rate(signs, nearest)? < 0 {
             return Some(Fall::AtOnce);
         }
         let grows = self.grows_until(nearest, distance);
@@ -172,12 +234,6 @@ impl<R: Real> Motion<'_, R> {
     #[inline(always)]
     fn corners(&self) -> u32 {
         if self.pair.is_face { 3 } else { 4 }
-    }
-
-    /// The exact sign of a form, unless the coordinates span too many bits.
-    #[inline(never)]
-    fn sign(&self, form: Form) -> Option<i32> {
-        self.bounded(form).sign().or_else(|| exact_sign(form, self.vertices, self.pair.is_face))
     }
 
     #[inline(never)]
@@ -198,84 +254,20 @@ impl<R: Real> Motion<'_, R> {
         ends.into_iter().all(|(x, y)| (0..3).all(|axis| x[axis] == y[axis]))
     }
 
-    /// Where the hull is nearest to the origin: at the first corner or side that is nearest, else
-    /// inside.
-    #[inline(always)]
-    fn nearest(&self) -> Option<Nearest> {
-        let corners = self.corners();
-        let mut a = 0;
-        while a < corners {
-            if self.supports(Nearest::Corner(a))? {
-                return Some(Nearest::Corner(a));
-            }
-            a += 1;
-        }
-        let mut at = 0;
-        while at < corners {
-            let side = side(at, self.pair.is_face);
-            let [a, b] = side;
-            // Strictly: a side without length has no nearest point between its ends.
-            let is_between =
-                self.sign(Form::Along { side, at: a })? < 0 && self.sign(Form::Along { side, at: b })? > 0;
-            if is_between && self.supports(Nearest::Side(side))? {
-                return Some(Nearest::Side(side));
-            }
-            at += 1;
-        }
-        self.sign(Form::PlaneHeight).map(Nearest::Inside)
-    }
-
-    /// Whether the whole hull is beyond the plane at the start.
-    #[inline(always)]
-    fn supports(&self, nearest: Nearest) -> Option<bool> {
-        let mut k = 0;
-        while k < self.corners() {
-            if !nearest.has(k) && self.height(nearest, start(k))? < 0 {
-                return Some(false);
-            }
-            k += 1;
-        }
-        Some(true)
-    }
-
-    /// The sign of the height of a control vector above the plane.
-    #[inline(always)]
-    fn height(&self, nearest: Nearest, to: Place) -> Option<i32> {
-        let sign = self.sign(nearest.above(to))?;
-        Some(nearest.away(sign))
-    }
-
-    /// The sign of `p . v`.
-    #[inline(always)]
-    fn rate(&self, nearest: Nearest) -> Option<i32> {
-        let sign = self.sign(nearest.rate())?;
-        Some(nearest.away(sign))
-    }
-
-    /// Whether the features touch at the start.
-    #[inline(always)]
-    fn touches(&self, nearest: Nearest) -> Option<bool> {
-        match nearest {
-            Nearest::Corner(a) => self.sign(Form::CornerSquare { a }).map(|sign| sign == 0),
-            Nearest::Side(side) => self.sign(Form::SideHeight { side }).map(|sign| sign == 0),
-            Nearest::Inside(of_hull) => Some(of_hull == 0),
-        }
-    }
-
     /// Whether features that touch at the start stay on one side of the hull, or move alike.
     #[inline(always)]
-    fn parts(&self) -> Option<bool> {
+    fn parts<S: Signs>(&self, signs: &S) -> Option<bool> {
         let (mut above, mut below, mut k) = (true, true, 0);
         while k < self.corners() {
-            let sign = self.sign(Form::Plane { to: end(k) })?;
+            let sign = signs.sign(self, Form::Plane { to: end(k) })?;
             (above, below, k) = (above & (sign >= 0), below & (sign <= 0), k + 1);
         }
         let (mut has_plane, mut alike, mut axis) = (false, true, 0);
         while axis < 3 {
-            has_plane |= self.sign(Form::Normal { axis })? != 0;
+            has_plane |= signs.sign(self, Form::Normal { axis })? != 0;
             k = 1;
             while k < self.corners() {
-                alike &= self.sign(Form::Motion { k, axis })? == 0;
+                alike &= signs.sign(self, Form::Motion { k, axis })? == 0;
                 k += 1;
             }
             axis += 1;
@@ -283,10 +275,11 @@ impl<R: Real> Motion<'_, R> {
         Some((has_plane && (above || below)) || alike)
     }
 
-    /// The first time at which the features are nearer than at the start, by advancement from a time
-    /// before which they are not.
+    /// The fourth part: the first time at which the features are nearer than at the start, by
+    /// advancement from a time before which they are not.
     #[inline(never)]
-    fn advance(&self, from: f64, distance: Bounds, within: f64, p: &Params) -> Verdict {
+    pub fn advance(&self, from: f64, near: &Within, p: &Params) -> Course {
+        let &Within { distance, within } = near;
         let pair = self.pair;
         let slack = Real::max(pair.scaled(p.tolerance), f64::ADVANCE_FINEST * pair.reach);
         let distance = Distance {
@@ -297,57 +290,21 @@ impl<R: Real> Motion<'_, R> {
         };
         let mut advance = Advance::new(*pair, (from, pair.end), distance, p.max_iterations);
         let told = advance.run();
-        advanced(told, advance.steps() >= p.max_iterations, p)
+        let verdict = advanced(told, advance.steps() >= p.max_iterations, p);
+        if verdict.is_separated() { Course::Never } else { Course::Known(verdict) }
     }
 }
 
-impl Nearest {
-    /// Whether the nearest point is a mixture with this corner.
+impl Fall {
     #[inline(always)]
-    fn has(self, k: u32) -> bool {
-        match self {
-            Nearest::Corner(a) => k == a,
-            Nearest::Side([a, b]) => k == a || k == b,
-            Nearest::Inside(_) => true,
-        }
-    }
-
-    /// The sign of a form of heights, away from the origin: that of the hull's plane is on either side.
-    #[inline(always)]
-    fn away(self, sign: i32) -> i32 {
-        if let Nearest::Inside(of_hull) = self { of_hull * sign } else { sign }
-    }
-
-    /// The height above the plane.
-    #[inline(always)]
-    fn above(self, to: Place) -> Form {
-        match self {
-            Nearest::Corner(a) => Form::Corner { a, to },
-            Nearest::Side(side) => Form::Side { side, to },
-            Nearest::Inside(_) => Form::Plane { to },
-        }
-    }
-
-    /// `p . v`, or a positive multiple of it.
-    #[inline(always)]
-    fn rate(self) -> Form {
-        match self {
-            Nearest::Corner(a) => Form::Corner { a, to: end(a) },
-            Nearest::Side(side) => Form::SideRate { side },
-            Nearest::Inside(_) => Form::PlaneRate,
-        }
-    }
-}
-
-/// The sides of a triangle, or of a parallelogram.
-#[inline(always)]
-fn side(at: u32, is_face: bool) -> [u32; 2] {
-    match (at, is_face) {
-        (0, _) => [0, 1],
-        (1, _) => [0, 2],
-        (2, true) => [1, 2],
-        (2, false) => [1, 3],
-        _ => [2, 3],
+    fn decides(self, p: &Params) -> Decided {
+        Decided::Course(match self {
+            Fall::Never => Course::Never,
+            Fall::AtOnce => Course::Solver,
+            Fall::NotBefore(from) if from >= p.end => Course::Never,
+            Fall::NotBefore(from) if from > 0.0 => return Decided::From(from),
+            Fall::NotBefore(_) => Course::Known(Verdict::undecided(0.0, p.end, 0, false)),
+        })
     }
 }
 
@@ -355,3 +312,6 @@ fn side(at: u32, is_face: bool) -> [u32; 2] {
 fn largest([a, b, c, d]: [f64; 4]) -> f64 {
     Real::max(Real::max(a, b), Real::max(c, d))
 }
+
+#[cfg(test)]
+mod tests;

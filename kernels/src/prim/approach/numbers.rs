@@ -1,9 +1,8 @@
-//! Control vectors with a bound of their error, and as integers.
+//! Control vectors with a bound of their error.
 
-use super::forms::{Form, Place, Ring, Vectors};
+use super::forms::{Place, Ring, Vectors};
+use crate::math::Real;
 use crate::math::tolerance::{Tolerance, U64};
-use crate::math::{Real, Vec3};
-use crate::prim::exact::{Int, common_grid};
 use crate::prim::isolate::Pair;
 
 /// A number, and by how much it may be wrong. Each operation adds its own rounding.
@@ -49,7 +48,17 @@ impl Bounded {
     }
 }
 
+impl Bounded {
+    #[inline(always)]
+    fn times(&self, other: &Self) -> Self {
+        let (a, b) = (Real::abs(self.value), Real::abs(other.value));
+        let errors = a * other.error + b * self.error + self.error * other.error;
+        Bounded::rounded(self.value * other.value, errors)
+    }
+}
+
 impl Ring for Bounded {
+    type Out = Bounded;
     #[inline(always)]
     fn plus(&self, other: &Self) -> Self {
         Bounded::rounded(self.value + other.value, self.error + other.error)
@@ -59,10 +68,8 @@ impl Ring for Bounded {
         Bounded::rounded(self.value - other.value, self.error + other.error)
     }
     #[inline(always)]
-    fn times(&self, other: &Self) -> Self {
-        let (a, b) = (Real::abs(self.value), Real::abs(other.value));
-        let errors = a * other.error + b * self.error + self.error * other.error;
-        Bounded::rounded(self.value * other.value, errors)
+    fn out(self) -> Bounded {
+        self
     }
 }
 
@@ -70,68 +77,37 @@ impl Ring for Bounded {
 pub struct Rounded<'a>(pub &'a Pair<f64, 4>);
 
 impl Vectors for Rounded<'_> {
-    type Number = Bounded;
+    type Out = Bounded;
+    type One = Bounded;
+    type Two = Bounded;
+    type Three = Bounded;
+    type Four = Bounded;
+    type Six = Bounded;
+    type Seven = Bounded;
     #[inline(always)]
     fn component(&self, Place { k, is_end }: Place, axis: u32) -> Bounded {
         let w = self.0.w[k as usize & 3];
         let v = if is_end { w[1] } else { w[0] };
         Bounded::rounded(v[axis as usize % 3], 0.0)
     }
-}
-
-/// Limbs of 32 bits. An integer of `b` bits gives differences of `b + 1`, of differences `b + 2`,
-/// products of two with three terms of `2b + 6`, [`Form::Side`] of `4b + 13`, [`Form::Plane`] of
-/// `3b + 9`, [`Form::SideRate`] of `6b + 20` and [`Form::PlaneRate`] of `7b + 26`.
-const LIMBS: usize = 64;
-/// Most bits that the coordinates of a pair may span: every set of finite f32 numbers is within
-/// 128 + 149. `7 * 286 + 26 = 2028` bits fit.
-const BITS: i32 = 286;
-
-impl Ring for Int<LIMBS> {
     #[inline(always)]
-    fn plus(&self, other: &Self) -> Self {
-        self.minus(&other.negated())
+    fn two(a: &Bounded, b: &Bounded) -> Bounded {
+        a.times(b)
     }
     #[inline(always)]
-    fn minus(&self, other: &Self) -> Self {
-        Int::minus(self, other)
+    fn three(a: &Bounded, b: &Bounded) -> Bounded {
+        a.times(b)
     }
     #[inline(always)]
-    fn times(&self, other: &Self) -> Self {
-        Int::times(self, other)
+    fn four(a: &Bounded, b: &Bounded) -> Bounded {
+        a.times(b)
     }
-}
-
-/// The vertices of two features at the start and at the end: a vertex and a face, or two edges.
-pub type Vertices<R> = [[Vec3<R>; 2]; 4];
-
-/// Control vectors as integers, in units of a common power of two.
-struct Exact<'a, R> {
-    vertices: &'a Vertices<R>,
-    is_face: bool,
-    grid: i32,
-}
-
-impl<R: Real> Vectors for Exact<'_, R> {
-    type Number = Int<LIMBS>;
     #[inline(always)]
-    fn component(&self, Place { k, is_end }: Place, axis: u32) -> Int<LIMBS> {
-        // As `Pair::w`: vertex less corner; at 2j + k, end j of the first less end k of the second.
-        let (first, second) = if self.is_face { (0, k.min(2) + 1) } else { (k >> 1, 2 + (k & 1)) };
-        let of = |vertex: u32| {
-            let ends = &self.vertices[vertex as usize & 3];
-            let at = if is_end { ends[1] } else { ends[0] };
-            Int::of(at[axis as usize % 3], self.grid)
-        };
-        Int::minus(&of(first), &of(second))
+    fn six(a: &Bounded, b: &Bounded) -> Bounded {
+        a.times(b)
     }
-}
-
-/// The sign of a form in integers. `None` if the coordinates span too many bits.
-#[cold]
-#[inline(never)]
-pub fn exact_sign<R: Real>(form: Form, vertices: &Vertices<R>, is_face: bool) -> Option<i32> {
-    let (grid, bits) = common_grid(vertices);
-    let exact = Exact { vertices, is_face, grid };
-    (bits <= BITS).then(|| form.value(&exact).sign())
+    #[inline(always)]
+    fn seven(a: &Bounded, b: &Bounded) -> Bounded {
+        a.times(b)
+    }
 }

@@ -71,7 +71,8 @@ pub fn isolate_and_settle<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) 
     if args.flags.has(RungFlags::UNLESS_MARKED) && block.load(args.earliest, earliest::MARK) == 0 {
         return;
     }
-    let [vf_tiles, ee_tiles] = dealt(block, args, true);
+    let counts = [args.vf.pairs, args.ee.pairs].map(|of| of.listed(block));
+    let [vf_tiles, ee_tiles] = dealt(block, counts, FEWEST);
     let is_long = vf_tiles.count as u64 + ee_tiles.count as u64 > LONG;
     let is_deferred = is_long && args.flags.has(RungFlags::DEFERS);
     let open = Settle {
@@ -184,26 +185,25 @@ struct Settle<F> {
 
 /// The tiles of a kind for a block.
 #[derive(Clone, Copy)]
-struct Tiles {
+pub(super) struct Tiles {
     /// How many pairs there are.
-    count: u32,
+    pub count: u32,
     /// The block's first tile; then one a grid on.
-    first: u32,
+    pub first: u32,
     /// How many pairs a tile has.
-    width: u32,
+    pub width: u32,
 }
 
 /// Deals pairs to blocks in tiles: those of vertices and faces, then those of edges, a block's
-/// tiles a grid apart. A tile has as many pairs as a block has lanes. If `spread`, it may have
-/// fewer: a short list is spread over the grid, and each block has a tile at most. Then few lanes
-/// of a warp wait for each other.
+/// tiles a grid apart. A tile has as many pairs as a block has lanes, or down to the fewest: a short
+/// list is spread over the grid, and each block has a tile at most. Then few lanes of a warp wait
+/// for each other.
 #[inline(always)]
-fn dealt<R: Real, B: Block>(block: &B, args: &RungArgs<R>, spread: bool) -> [Tiles; 2] {
+pub(super) fn dealt<B: Block>(block: &B, [vf, ee]: [u32; 2], fewest: u32) -> [Tiles; 2] {
     let (block_at, blocks, lanes) = (block.block(), block.blocks(), block.lanes());
-    let [vf, ee] = [&args.vf, &args.ee].map(|of| of.pairs.listed(block));
     // Each kind may have a tile that is not full.
-    let fewest = || (vf as u64 + ee as u64).div_ceil(blocks.max(3) as u64 - 2);
-    let width = if spread { fewest().clamp(FEWEST.min(lanes) as u64, lanes as u64) as u32 } else { lanes };
+    let even = || (vf as u64 + ee as u64).div_ceil(blocks.max(3) as u64 - 2);
+    let width = if fewest < lanes { even().clamp(fewest as u64, lanes as u64) as u32 } else { lanes };
     let behind = vf.div_ceil(width) % blocks;
     let first = if block_at < behind { block_at + blocks - behind } else { block_at - behind };
     [Tiles { count: vf, first: block_at, width }, Tiles { count: ee, first, width }]
@@ -211,7 +211,7 @@ fn dealt<R: Real, B: Block>(block: &B, args: &RungArgs<R>, spread: bool) -> [Til
 
 /// Least pairs of a tile. With fewer, more warps fetch the same code at different times, which
 /// costs more than they save (measured: `benches/NOTES.md`).
-const FEWEST: u32 = 16;
+pub(super) const FEWEST: u32 = 16;
 
 /// More pairs than this are a long list. As many run at once on a GPU of 128 processors, so each
 /// warp takes one tile of a shorter list. A warp waits for its slowest lane, and pairs settle in
@@ -231,7 +231,8 @@ fn rung<R: Real, B: Block>(
     vf: impl Fn(&B::Lane, Pair) -> Tested,
     ee: impl Fn(&B::Lane, Pair) -> Tested,
 ) {
-    let [vf_tiles, ee_tiles] = dealt(block, args, false);
+    let counts = [args.vf.pairs, args.ee.pairs].map(|of| of.listed(block));
+    let [vf_tiles, ee_tiles] = dealt(block, counts, block.lanes());
     let none = || None::<Settle<fn(&B::Lane, Pair, bool) -> Option<Verdict>>>;
     each(block, args, (&args.vf, vf_tiles), none(), vf);
     each(block, args, (&args.ee, ee_tiles), none(), ee);

@@ -1,0 +1,89 @@
+//! The lists between the rungs of a certified solver: names, counters, memory.
+
+use crate::device::Device;
+use crate::error::Error;
+use crate::pipeline::list::{GrowableOutput, List, Named, named};
+use bytemuck::Pod;
+use nearmiss_kernels::abi::{Begun, Counter, Pair, counter};
+
+/// Lists of both kinds: a name for comparisons of machines, a name for errors, and the counter.
+pub type OfKinds = [(&'static str, &'static str, Counter); 2];
+
+/// The lists that rungs leave.
+pub const LEFT: [OfKinds; 5] = [
+    [
+        ("narrow: vf for f64", "vertex/face pairs for f64", counter::VF_ESCALATED),
+        ("narrow: ee for f64", "edge/edge pairs for f64", counter::EE_ESCALATED),
+    ],
+    [
+        ("narrow: vf for slices", "vertex/face pairs for slices", counter::VF_HARD),
+        ("narrow: ee for slices", "edge/edge pairs for slices", counter::EE_HARD),
+    ],
+    [
+        ("narrow: vf that may approach", "vertex/face pairs that may approach", counter::VF_APPROACHING),
+        ("narrow: ee that may approach", "edge/edge pairs that may approach", counter::EE_APPROACHING),
+    ],
+    [
+        ("narrow: vf near at the start", "vertex/face pairs near at the start", counter::VF_BEGIN_NEAR),
+        ("narrow: ee near at the start", "edge/edge pairs near at the start", counter::EE_BEGIN_NEAR),
+    ],
+    [
+        ("narrow: vf for integers", "vertex/face pairs for integers", counter::VF_UNBOUNDED),
+        ("narrow: ee for integers", "edge/edge pairs for integers", counter::EE_UNBOUNDED),
+    ],
+];
+
+/// The lists of pairs that advance.
+pub const ADVANCING: OfKinds = [
+    ("narrow: vf that advance", "vertex/face pairs that advance", counter::VF_ADVANCING),
+    ("narrow: ee that advance", "edge/edge pairs that advance", counter::EE_ADVANCING),
+];
+
+/// The lists of pairs to settle. How many there are depends on the machine, so none is compared.
+pub const ASKED: OfKinds = [
+    ("", "vertex/face pairs to settle", counter::VF_ASKED),
+    ("", "edge/edge pairs to settle", counter::EE_ASKED),
+];
+
+/// Pairs that a rung leaves: vertex/face, edge/edge.
+pub enum Left {
+    /// To isolation, or to slices.
+    Pairs([List<Pair>; 2]),
+    /// With a separation: with times that are proven.
+    Begun([List<Begun>; 2]),
+}
+
+impl Left {
+    /// Returns how many pairs both have room for.
+    pub fn capacity(&self) -> usize {
+        match self {
+            Left::Pairs([vf, ee]) => vf.capacity() + ee.capacity(),
+            Left::Begun([vf, ee]) => vf.capacity() + ee.capacity(),
+        }
+    }
+
+    /// Returns the lists.
+    pub fn growable(&mut self) -> [&mut dyn GrowableOutput; 2] {
+        match self {
+            Left::Pairs([vf, ee]) => [vf, ee],
+            Left::Begun([vf, ee]) => [vf, ee],
+        }
+    }
+
+    /// Returns the lists, with these names.
+    pub fn named(&self, [of_vf, of_ee]: [&'static str; 2]) -> [Named<'_>; 2] {
+        match self {
+            Left::Pairs([vf, ee]) => [named(of_vf, vf), named(of_ee, ee)],
+            Left::Begun([vf, ee]) => [named(of_vf, vf), named(of_ee, ee)],
+        }
+    }
+}
+
+/// Allocates lists of both kinds.
+///
+/// # Errors
+/// Device errors.
+pub fn lists<T: Pod>(device: &Device, names: OfKinds, capacity: [usize; 2]) -> Result<[List<T>; 2], Error> {
+    let [(_, vf, vf_counter), (_, ee, ee_counter)] = names;
+    Ok([List::new(device, vf, vf_counter, capacity[0])?, List::new(device, ee, ee_counter, capacity[1])?])
+}

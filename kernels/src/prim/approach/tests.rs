@@ -1,0 +1,151 @@
+extern crate std;
+
+use super::forms::start;
+use super::*;
+use crate::math::Vec3;
+use crate::prim::cubic::Moving;
+use crate::prim::isolate::{Edges, Face};
+use std::vec::Vec;
+
+/// Numbers that look random: a multiplication and a shift (splitmix64).
+pub(super) struct Random(pub u64);
+
+impl Random {
+    pub fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let x = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        x ^ x >> 31
+    }
+    pub fn below(&mut self, count: u64) -> u64 {
+        self.next() % count
+    }
+}
+
+/// Every form of a pair.
+pub(super) fn forms(is_face: bool) -> Vec<Form> {
+    let corners = if is_face { 3 } else { 4 };
+    let mut all = Vec::new();
+    for k in 0..corners {
+        all.push(Form::CornerSquare { a: k });
+        for to in [start(k), end(k)] {
+            all.push(Form::Plane { to });
+            all.extend((0..corners).map(|a| Form::Corner { a, to }));
+        }
+        for axis in 0..3 {
+            all.push(Form::Motion { k, axis });
+        }
+    }
+    let pairs = if is_face { [[0, 1], [0, 2], [1, 2], [1, 2]] } else { [[0, 1], [0, 2], [1, 3], [2, 3]] };
+    for side in pairs {
+        all.extend([Form::SideHeight { side }, Form::SideSquare { side }, Form::SideRate { side }]);
+        all.extend(side.map(|at| Form::Along { side, at }));
+        all.extend((0..corners).flat_map(|k| [start(k), end(k)]).map(|to| Form::Side { side, to }));
+    }
+    all.extend([Form::PlaneHeight, Form::PlaneSquare, Form::PlaneRate]);
+    all.extend([1, 2].map(|k| Form::Weight { k }));
+    all.extend((0..3).map(|axis| Form::Normal { axis }));
+    all
+}
+
+/// Signs by integers alone.
+struct Integers<'a>(Exact<'a>);
+
+impl Signs for Integers<'_> {
+    fn sign(&self, _: &Motion<f64>, form: Form) -> Option<i32> {
+        self.0.sign(form)
+    }
+    const SEARCHES: bool = true;
+}
+
+/// A pair: dyadic, so that signs are often 0; on a fine grid; scaled by much; with some vertices alike
+/// or at rest; of f32 and of f64.
+fn hostile(r: &mut Random) -> Vertices<f64> {
+    let kind = r.below(6);
+    let coordinate = |r: &mut Random, kind: u64| -> f64 {
+        match kind {
+            0 | 1 => (r.below(9) as f64 - 4.0) / 4.0,
+            2 => (r.below(1 << 20) as f64 - 524_288.0) * 1e-6,
+            3 => ((r.below(1 << 24) as f64 - 8_388_608.0) * 1e-9) as f32 as f64 + 1.0,
+            4 => (r.below(1 << 53) as f64 - 4e15) * f64::pow2(-52 - r.below(40) as i32),
+            _ => (r.below(3) as f64 - 1.0) * f64::pow2(r.below(30) as i32 - 15),
+        }
+    };
+    let mut vertices = [[Vec3([0.0; 3]); 2]; 4];
+    for ends in &mut vertices {
+        for at in ends.iter_mut() {
+            *at = Vec3(at.0.map(|_| coordinate(r, kind)));
+        }
+        // At rest, sliding in a plane, or moving alike.
+        match r.below(5) {
+            0 => ends[1] = ends[0],
+            1 => ends[1].0[2] = ends[0][2],
+            2 => ends[1] = ends[0] + Vec3([0.25, -0.5, 0.125]),
+            _ => {}
+        }
+    }
+    if r.below(4) == 0 {
+        vertices[r.below(4) as usize] = vertices[r.below(4) as usize];
+    }
+    if r.below(3) == 0 {
+        // A flat start.
+        for (k, ends) in vertices.iter_mut().enumerate() {
+            ends[0].0[2] = if k == 0 { 0.25 } else { 0.0 };
+        }
+    }
+    vertices
+}
+
+fn with<T>(v: &Vertices<f64>, is_face: bool, p: &Params, test: impl FnOnce(&Motion<f64>) -> T) -> T {
+    let [a, b, c, d] = v.map(|[t0, t1]| Moving { t0, t1 });
+    let pair = if is_face { Face::new(a, [b, c, d], p).of_four() } else { Edges::new([a, b], [c, d], p) };
+    test(&Motion { vertices: v, pair: &pair })
+}
+
+/// Integers decide the same as bounds. The search finds the nearest point that is suggested. The parts in sequence are the course.
+#[test]
+fn the_parts_have_the_course_of_the_whole() {
+    let mut r = Random(7);
+    let (mut by_bounds, mut suggested, mut open, mut advancing) = (0, 0, 0, 0);
+    for i in 0..40_000 {
+        let v = hostile(&mut r);
+        let is_face = i % 2 == 0;
+        let p = Params { min_separation: [0.0, 0.25, 1.0, 50.0][i / 2 % 4], ..Params::new(1e-6) };
+        with(&v, is_face, &p, |motion| {
+            let course = motion.course([0.0; 4], &p);
+            let Begin::Within(near) = motion.begin([0.0; 4], &p) else {
+                assert_eq!(course, Course::Solver);
+                return;
+            };
+            let exact = Integers(Exact::new(&v, is_face));
+            for form in forms(is_face).into_iter().step_by(1 + i % 5) {
+                if let Some(sign) = motion.bounded(form).sign() {
+                    assert_eq!(exact.0.sign(form), Some(sign), "{form:?} {v:?}");
+                }
+            }
+            if let Some(nearest) = motion.suggested() {
+                suggested += 1;
+                assert_eq!(motion.nearest(&exact), Some(nearest), "{is_face} {v:?}");
+                assert_eq!(motion.touches(&exact, nearest), Some(false), "{is_face} {v:?}");
+            }
+            let full = motion.by_integers(&near, &p);
+            if let Some(decided) = motion.by_bounds(&near, &p) {
+                by_bounds += 1;
+                assert_eq!(decided, full, "{is_face} {v:?}");
+            } else {
+                open += 1;
+            }
+            let told = match full {
+                Decided::Course(course) => course,
+                Decided::From(from) => {
+                    advancing += 1;
+                    motion.advance(from, &near, &p)
+                }
+            };
+            assert_eq!(told, course, "{is_face} {v:?}");
+        });
+    }
+    // Each part has its share.
+    assert!(by_bounds > 5_000 && suggested > 5_000, "{by_bounds} {suggested}");
+    assert!(open > 2_000 && advancing > 500, "{open} {advancing}");
+}
