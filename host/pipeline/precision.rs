@@ -49,8 +49,10 @@ pub trait Precision: Real + Send {
     type NearExcluding: Entry<Args = NearExcludingArgs<Self>>;
     /// [`Precision::FeaturesAtRest`] for vertices with a thickness.
     type ThickAtRest: Entry<Args = FeaturesArgs<Self>>;
-    /// Finds pairs of thick features within a distance, at one time.
+    /// Finds pairs of thick features within a distance, at one time, as far as corners decide.
     type ThickNear: Entry<Args = ThickNearArgs<Self>>;
+    /// Finds them among the pairs that corners leave open.
+    type OpenNear: Entry<Args = ThickNearArgs<Self>>;
     /// Turns triangle pairs into pairs of thick features whose boxes meet in a step.
     type ThickFeatures: Entry<Args = FeaturesArgs<Self>>;
     /// Copies vertices to the meshes of deformable bodies.
@@ -135,6 +137,7 @@ impl Precision for f32 {
     type NearExcluding = entry::narrow_near_excluding_f32;
     type ThickAtRest = entry::narrow_features_thick_at_rest_f32;
     type ThickNear = entry::narrow_near_thick_f32;
+    type OpenNear = entry::narrow_near_open_f32;
     type ThickFeatures = entry::narrow_features_thick_f32;
     type MeshVertices = entry::refit_meshes_vertices_f32;
     type Least = entry::narrow_least_f32;
@@ -202,6 +205,7 @@ impl Precision for f64 {
     type NearExcluding = entry::narrow_near_excluding_f64;
     type ThickAtRest = entry::narrow_features_thick_at_rest_f64;
     type ThickNear = entry::narrow_near_thick_f64;
+    type OpenNear = entry::narrow_near_open_f64;
     type ThickFeatures = entry::narrow_features_thick_f64;
     type MeshVertices = entry::refit_meshes_vertices_f64;
     type Least = entry::narrow_least_f64;

@@ -217,8 +217,10 @@ kernels! {
     narrow_turning: turning::solve, [TurningArgs], NARROW, 0;
     narrow_near_f32: near::near::<f32, B>, [NearArgs<f32>], RUNG, 0, registers = 64;
     narrow_near_f64: near::near::<f64, B>, [NearArgs<f64>], RUNG, 0;
-    narrow_near_thick_f32: near::thick::<f32, B>, [ThickNearArgs<f32>], RUNG, 0, registers = 96;
-    narrow_near_thick_f64: near::thick::<f64, B>, [ThickNearArgs<f64>], RUNG, 0;
+    narrow_near_thick_f32: near::thick::thick::<f32, B>, [ThickNearArgs<f32>], RUNG, 0, registers = 80;
+    narrow_near_thick_f64: near::thick::thick::<f64, B>, [ThickNearArgs<f64>], RUNG, 0;
+    narrow_near_open_f32: near::thick::open::<f32, B>, [ThickNearArgs<f32>], RUNG, 0;
+    narrow_near_open_f64: near::thick::open::<f64, B>, [ThickNearArgs<f64>], RUNG, 0;
     narrow_near_excluding_f32: near::near_excluding::<f32, B>, [NearExcludingArgs<f32>], near::LANES, near::SHARED, registers = 64;
     narrow_near_excluding_f64: near::near_excluding::<f64, B>, [NearExcludingArgs<f64>], near::LANES, near::SHARED;
     narrow_exclude: exclude::exclude, [ExcludeArgs], RUNG, 0;

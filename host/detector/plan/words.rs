@@ -18,7 +18,7 @@ pub const STAGES: [(&str, &str); 10] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 108] = [
+const KERNELS: [(&str, &str); 109] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
     ("place_turns", "rotation vectors and paths of bodies that turn"),
     ("place", "poses applied, uploads put in place, other bodies at rest"),
@@ -110,7 +110,8 @@ const KERNELS: [(&str, &str); 108] = [
     ("narrow_bodies_least", "the least distance of each pair of bodies"),
     ("narrow_bodies_first", "the first triangles at that distance"),
     ("narrow_bodies_nearest", "nearest points of these"),
-    ("narrow_near_thick", "distances of feature pairs, and their radii"),
+    ("narrow_near_thick", "distances of feature pairs, and radii of their corners"),
+    ("narrow_near_open", "radii of nearest points, and exclusions"),
     ("narrow_near_excluding", "distances of feature pairs, without those excluded"),
     ("narrow_exclude_triangles", "triangle pairs that are not excluded"),
     ("narrow_exclude", "feature pairs that are not excluded"),

@@ -9,15 +9,19 @@ use crate::device::{Ahead, Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::counts::Counts;
 use crate::pipeline::layout::Layout;
-use crate::pipeline::list::{GrowableOutput, List, Named};
+use crate::pipeline::list::{GrowableOutput, List, Named, named};
 use crate::pipeline::order::{Order, Ordering, Unordered};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
 use crate::pipeline::{launch, purpose};
 use crate::query::Query;
 use nearmiss_kernels::abi::{
-    BodyTolerance, Counter, Counters, NearArgs, NearExcludingArgs, NearHit, Span, ThickNearArgs, counter,
+    BodyTolerance, Counter, Counters, NearArgs, NearExcludingArgs, NearHit, Output, Pair, Span,
+    ThickNearArgs, counter,
 };
+
+/// Names of the lists of pairs of vertices with a thickness that the first launch leaves open.
+const OPEN: [&str; 2] = ["vertex/face pairs that are open", "edge/edge pairs that are open"];
 
 /// A step of the phase.
 #[derive(Clone, Copy)]
@@ -46,6 +50,9 @@ pub struct NearNarrow {
     undecided: Counter,
     /// The thickness of every vertex; empty in a scene without.
     radii: Buffer<f64>,
+    /// Pairs of vertices with a thickness that the first launch leaves to the second, vertex/face and
+    /// edge/edge. None if radii are the same within each body, and no pairs are excluded.
+    open: Option<[List<Pair>; 2]>,
     /// All hits in order, if the device orders them.
     ordered: Option<Order<NearHit>>,
 }
@@ -58,6 +65,14 @@ impl NearNarrow {
     /// Device errors.
     pub fn new(device: &Device, distance: f64, layout: &Layout, few: usize) -> Result<Self, Error> {
         let excludes = !layout.excluded.is_empty();
+        let has_open = layout.is_uneven || (layout.is_thick() && excludes);
+        let open = || {
+            let [vf, ee] = OPEN;
+            Ok::<_, Error>([
+                List::new(device, vf, counter::VF_OPEN_NEAR, few / 4)?,
+                List::new(device, ee, counter::EE_OPEN_NEAR, few / 2)?,
+            ])
+        };
         Ok(NearNarrow {
             distance,
             excludes,
@@ -65,6 +80,7 @@ impl NearNarrow {
             ee_hits: List::new(device, "edge/edge pairs within the distance", counter::EE_HITS, 2 * few)?,
             undecided: counter::UNDECIDED,
             radii: device.of(purpose::RADII).upload(&layout.radii)?,
+            open: has_open.then(open).transpose()?,
             ordered: None,
         })
     }
@@ -84,8 +100,15 @@ impl NearNarrow {
         };
         let count = vf.capacity() + ee.capacity();
         if !self.radii.is_empty() {
-            let args = ThickNearArgs { near: args, radii: self.radii.span(), tables: given.excluded };
-            return launch::striding::<R::ThickNear>(given.device, count, &args);
+            let of = |list: &List<Pair>| list.output(given.counters);
+            let [vf_open, ee_open] =
+                self.open.as_ref().map_or([Output::EMPTY; 2], |[vf, ee]| [of(vf), of(ee)]);
+            let (radii, tables) = (self.radii.span(), given.excluded);
+            let args = ThickNearArgs { near: args, vf_open, ee_open, radii, tables };
+            launch::striding::<R::ThickNear>(given.device, count, &args)?;
+            let Some([vf, ee]) = &self.open else { return Ok(()) };
+            let count = vf.capacity() + ee.capacity();
+            return launch::striding::<R::OpenNear>(given.device, count, &args);
         }
         if self.excludes {
             let args = NearExcludingArgs { near: args, tables: given.excluded };
@@ -126,12 +149,20 @@ impl<R: Precision> Narrow<R> for NearNarrow {
     fn lists<'a>(&'a mut self, step: usize, features: &'a mut Features) -> Vec<&'a mut dyn GrowableOutput> {
         match Step::ALL[step] {
             Step::Features => growable(&mut features.candidates).collect(),
-            Step::Near => vec![&mut self.vf_hits, &mut self.ee_hits, &mut self.undecided],
+            Step::Near => growable([&mut self.vf_hits, &mut self.ee_hits])
+                .chain(growable([&mut self.undecided]))
+                .chain(growable(self.open.iter_mut().flatten()))
+                .collect(),
         }
     }
 
     fn between<'a>(&'a self, features: &'a Features) -> Vec<Named<'a>> {
-        features.between()
+        let mut lists = features.between();
+        if let Some([vf, ee]) = &self.open {
+            let [vf_name, ee_name] = ["narrow: vf that are open", "narrow: ee that are open"];
+            lists.extend([named(vf_name, vf), named(ee_name, ee)]);
+        }
+        lists
     }
 
     fn ordering(&mut self) -> Option<&mut dyn Ordering> {

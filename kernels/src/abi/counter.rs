@@ -205,6 +205,10 @@ counters! { 0;
     FIRST_BODIES,
     /// Pairs of bodies within a distance.
     NEAR_BODIES,
+    /// Vertex/face pairs at rest that radii of corners leave open.
+    VF_OPEN_NEAR,
+    /// Edge/edge pairs that they leave open.
+    EE_OPEN_NEAR,
 }
 
 /// The counters of a frame, in device memory.

@@ -25,6 +25,11 @@ impl ExclusionTables {
     /// Nothing is excluded.
     pub const NONE: Self =
         ExclusionTables { partners: Span::EMPTY, rest: Span::EMPTY, bodies: Span::EMPTY, faces: Span::EMPTY };
+    /// Whether nothing is excluded.
+    #[inline(always)]
+    pub const fn is_empty(&self) -> bool {
+        self.partners.is_empty() && self.rest.is_empty() && self.faces.is_empty()
+    }
 }
 
 arguments! {

@@ -149,10 +149,15 @@ arguments! {
         /// The distance, a length.
         distance: f64,
     }
-    /// `narrow_near_thick`: the same, of vertices with a thickness.
+    /// `narrow_near_thick`, `narrow_near_open`: the same, of vertices with a thickness.
     ThickNearArgs<R: Real> {
         /// Candidates, lists, the distance.
         near: NearArgs<R>,
+        /// Vertex/face pairs that radii of corners leave open: out of the first, in for the second.
+        /// Empty if radii are the same within each body, and no pairs are excluded.
+        vf_open: Output<Pair>,
+        /// Edge/edge pairs that they leave open.
+        ee_open: Output<Pair>,
         /// The thickness of every vertex.
         radii: Span<f64>,
         /// Pairs that the scene excludes.

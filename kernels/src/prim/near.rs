@@ -43,7 +43,7 @@
 
 mod thick;
 
-pub use thick::{Radii, Range, ThickFilter, thick_edge_edge, thick_vertex_face};
+pub use thick::{ByCorners, Radii, Range, ThickFilter, by_corners, thick_edge_edge, thick_vertex_face};
 
 use crate::exec::RowMap;
 use crate::math::tolerance::{
@@ -176,6 +176,7 @@ pub fn weights(of: [Vec3<f64>; 3], is_face: bool) -> [f64; 2] {
 }
 
 /// The nearest point, of differences that are multiplied by `up` so that their squares are numbers.
+#[derive(Clone, Copy)]
 struct Scaled {
     /// The largest component of the multiplied differences.
     reach: f64,

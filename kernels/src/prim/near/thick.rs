@@ -39,13 +39,34 @@ use core::marker::PhantomData;
 /// and their radii, which are in the order of the corners.
 #[inline(always)]
 pub fn thick_vertex_face<R: Real>(corners: [Vec3<R>; 4], radii: [f64; 4], distance: f64) -> Option<Near> {
-    within::<true>(differences::<R, f64, true>(corners), radii, distance)
+    Measured::<true>::of(corners, radii, distance).near()
 }
 
 /// The same of two edges.
 #[inline(always)]
 pub fn thick_edge_edge<R: Real>(corners: [Vec3<R>; 4], radii: [f64; 4], distance: f64) -> Option<Near> {
-    within::<false>(differences::<R, f64, false>(corners), radii, distance)
+    Measured::<false>::of(corners, radii, distance).near()
+}
+
+/// A pair, as far as the radii of its corners decide it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ByCorners {
+    /// Certainly farther apart.
+    Beyond,
+    /// Nearest points, and a verdict that radii of nearest points do not change.
+    Within(Near),
+    /// The radii of nearest points decide.
+    Open,
+}
+
+/// As [`thick_vertex_face`], or [`thick_edge_edge`], by the radii of corners alone.
+#[inline(always)]
+pub fn by_corners<R: Real, const TRIANGLE: bool>(
+    corners: [Vec3<R>; 4],
+    radii: [f64; 4],
+    distance: f64,
+) -> ByCorners {
+    Measured::<TRIANGLE>::of(corners, radii, distance).by_corners()
 }
 
 /// As [`super::Filter`], within the distance and the largest radius of each feature.
@@ -77,31 +98,81 @@ impl<R: Real, const TRIANGLE: bool> RowMap for ThickFilter<R, TRIANGLE> {
     }
 }
 
-/// The nearest points, unless they are certainly beyond the distance and their radii.
-#[inline(always)]
-fn within<const TRIANGLE: bool>(of: [Vec3<f64>; 3], radii: [f64; 4], distance: f64) -> Option<Near> {
-    let Scaled { reach, found, up, down } = Scaled::of::<TRIANGLE>(of);
-    let (distance, radii) = (distance * up, radii.map(|radius| radius * up));
-    let is_beyond = |range: &Range| {
-        let most = (distance + range.most + DISTANCE_ERROR * reach) * DISTANCE_UP;
-        found.squared > most * most
-    };
-    let is_certain = |range: &Range| {
-        let least = (distance + range.least - DISTANCE_CERTAIN * reach) * (2.0 - DISTANCE_UP);
-        least > 0.0 && found.squared <= least * least
-    };
-    let radii = Radii::new::<TRIANGLE>(radii);
-    // Corners decide all pairs of one radius, and many of several.
-    let mut range = radii.range;
-    if !is_beyond(&range) && !is_certain(&range) {
-        let shortest = Real::sqrt(found.squared);
-        range = radii.of_nearest::<TRIANGLE>(of.map(|v| v * up), reach, shortest);
+/// A pair whose distance is known, and the radii of its corners.
+struct Measured<const TRIANGLE: bool> {
+    of: [Vec3<f64>; 3],
+    scaled: Scaled,
+    /// Multiplied as the differences, and so are the radii.
+    distance: f64,
+    radii: Radii,
+}
+
+impl<const TRIANGLE: bool> Measured<TRIANGLE> {
+    #[inline(always)]
+    fn of<R: Real>(corners: [Vec3<R>; 4], radii: [f64; 4], distance: f64) -> Self {
+        let of = differences::<R, f64, TRIANGLE>(corners);
+        let scaled = Scaled::of::<TRIANGLE>(of);
+        let up = scaled.up;
+        let radii = Radii::new::<TRIANGLE>(radii.map(|radius| radius * up));
+        Measured { of, scaled, distance: distance * up, radii }
     }
-    (!is_beyond(&range)).then(|| Near {
-        squared: found.squared * down * down,
-        at: found.at,
-        certain: is_certain(&range),
-    })
+
+    /// Certainly farther than the distance and the largest radius of a range.
+    #[inline(always)]
+    fn is_beyond(&self, range: &Range) -> bool {
+        let most = (self.distance + range.most + DISTANCE_ERROR * self.scaled.reach) * DISTANCE_UP;
+        self.scaled.found.squared > most * most
+    }
+
+    /// Certainly within the distance and the least radius of a range.
+    #[inline(always)]
+    fn is_certain(&self, range: &Range) -> bool {
+        let error = DISTANCE_CERTAIN * self.scaled.reach;
+        let least = (self.distance + range.least - error) * (2.0 - DISTANCE_UP);
+        least > 0.0 && self.scaled.found.squared <= least * least
+    }
+
+    #[inline(always)]
+    fn listed(&self, certain: bool) -> Near {
+        let Scaled { found, down, .. } = self.scaled;
+        Near { squared: found.squared * down * down, at: found.at, certain }
+    }
+
+    /// The verdict of corners. They decide all pairs of one radius a feature, and many of several.
+    ///
+    /// With one radius a feature, each point has exactly the sum of both. Then [`Radii::of_nearest`]
+    /// widens the range of corners by its rounding. Both tests are monotone in the range. So a pair
+    /// that is neither beyond nor certain by corners stays so.
+    #[inline(always)]
+    fn by_corners(&self) -> ByCorners {
+        let Radii { along: [s, t], range, .. } = &self.radii;
+        if self.is_beyond(range) {
+            return ByCorners::Beyond;
+        }
+        let is_certain = self.is_certain(range);
+        if is_certain | ((*s == 0.0) & (*t == 0.0)) {
+            return ByCorners::Within(self.listed(is_certain));
+        }
+        ByCorners::Open
+    }
+
+    /// The verdict of the radii of nearest points, if corners decide nothing.
+    #[inline(always)]
+    fn by_nearest(&self) -> Option<Near> {
+        let Scaled { reach, found, up, .. } = self.scaled;
+        let shortest = Real::sqrt(found.squared);
+        let range = self.radii.of_nearest::<TRIANGLE>(self.of.map(|v| v * up), reach, shortest);
+        (!self.is_beyond(&range)).then(|| self.listed(self.is_certain(&range)))
+    }
+
+    #[inline(always)]
+    fn near(&self) -> Option<Near> {
+        match self.by_corners() {
+            ByCorners::Beyond => None,
+            ByCorners::Within(near) => Some(near),
+            ByCorners::Open => self.by_nearest(),
+        }
+    }
 }
 
 /// The range of both radii, summed, over points that may be nearest.
@@ -255,4 +326,74 @@ impl Line {
 #[inline(always)]
 fn part(x: f64) -> f64 {
     if x < 1.0 { x } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers in [0, 1), by xorshift.
+    struct Numbers(u64);
+
+    impl Numbers {
+        fn next(&mut self) -> f64 {
+            self.0 ^= self.0 << 13;
+            self.0 ^= self.0 >> 7;
+            self.0 ^= self.0 << 17;
+            (self.0 >> 11) as f64 / (1u64 << 53) as f64
+        }
+    }
+
+    /// Corners in general position, in a plane, on a line, or tiny.
+    fn corners(numbers: &mut Numbers, family: u32) -> [Vec3<f64>; 4] {
+        let [x, y, z] = [[1.0; 3], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0], [1e-200; 3]][family as usize % 4];
+        core::array::from_fn(|_| Vec3([x, y, z].map(|size| numbers.next() * size)))
+    }
+
+    /// At the border, by few roundings: there neither test of corners holds.
+    fn at_border<const TRIANGLE: bool>() -> u32 {
+        let (mut numbers, mut open) = (Numbers(0x9e37_79b9_7f4a_7c15), 0);
+        for i in 0..4000 {
+            let at = corners(&mut numbers, i);
+            let size = if i % 4 == 3 { 1e-200 } else { 1.0 };
+            let (a, b) = (numbers.next() * 0.25 * size, numbers.next() * 0.25 * size);
+            let radii = if TRIANGLE { [a, b, b, b] } else { [a, a, b, b] };
+            let shortest = super::super::distance::<f64, TRIANGLE>(at).0;
+            let off = (numbers.next() - 0.5) * 2e-14 * size;
+            let distance = (shortest - (a + b) + off).greater(0.0);
+            let pair = Measured::<TRIANGLE>::of(at, radii, distance);
+            let said = pair.by_corners();
+            assert_ne!(said, ByCorners::Open, "{at:?} {radii:?} {distance:e}");
+            if let ByCorners::Within(near @ Near { certain: false, .. }) = said {
+                open += 1;
+                assert_eq!(pair.by_nearest(), Some(near), "{at:?} {radii:?} {distance:e}");
+            }
+        }
+        open
+    }
+
+    #[test]
+    fn corners_decide_pairs_of_one_radius_a_feature() {
+        let (faces, edges) = (at_border::<true>(), at_border::<false>());
+        assert!(faces > 500 && edges > 500, "{faces} {edges}");
+    }
+
+    #[test]
+    fn both_parts_together_are_the_whole() {
+        let (mut numbers, mut seen) = (Numbers(7), [0; 3]);
+        for i in 0..4000 {
+            let at = corners(&mut numbers, i);
+            let size = if i % 4 == 3 { 1e-200 } else { 1.0 };
+            let radii = core::array::from_fn(|_| numbers.next() * 0.25 * size);
+            let distance = numbers.next() * 0.25 * size;
+            let (kind, wanted) = match by_corners::<f64, false>(at, radii, distance) {
+                ByCorners::Beyond => (0, None),
+                ByCorners::Within(near) => (1, Some(near)),
+                ByCorners::Open => (2, Measured::<false>::of(at, radii, distance).by_nearest()),
+            };
+            seen[kind] += 1;
+            assert_eq!(thick_edge_edge(at, radii, distance), wanted);
+        }
+        assert!(seen.iter().all(|&count| count > 100), "{seen:?}");
+    }
 }

@@ -6,15 +6,15 @@
 //!          The same lane measures the rest in f64. Numbering these first, within a stretch of a
 //!          block of 128, takes a third longer on an H200 (`benches/NOTES.md`).
 //!          With exclusions a warp a block, as many blocks as are resident. There the rest wait on
-//!          chip until there is one a lane: a measured pair costs more. With a thickness that takes
-//!          longer: its registers leave few warps.
+//!          chip until there is one a lane: a measured pair costs more.
+//!          Vertices with a thickness have two launches of their own, see [`thick`].
 //! Reads    candidates, faces or edges, positions (four vertices).
 //! Writes   pairs with squared distance and nearest points; the number of pairs that are not
 //!          certainly within the distance.
-//! Before   candidates are complete. Positions are finite. distance > 0; with a thickness from 0.
-//! After    hits ⊇ {candidates within the distance, and with a thickness both radii}, less those that
-//!          the scene excludes ([`super::exclude`]). None is farther by more than the rounding of
-//!          f64, see [`crate::prim::near`].
+//! Before   candidates are complete. Positions are finite. distance > 0.
+//! After    hits ⊇ {candidates within the distance}, less those that the scene excludes
+//!          ([`super::exclude`]). None is farther by more than the rounding of f64, see
+//!          [`crate::prim::near`].
 //! Room     hits: counted past the end, grown, run again. Pairs that wait: less than one a lane
 //!          is left when a stretch adds at most one a lane, so two a lane are always enough.
 //! Departs  pairs are measured in f64 for positions of either precision, so the bound is that of
@@ -22,15 +22,15 @@
 //! Cost     8 B candidate, 12 B indices, 64 B positions (f64: 128 B; gathered), again for each
 //!          measured pair; 32 B a hit.
 //!          About 220 operations of f32, and as many of f64 for a measured pair, five of them
-//!          divisions. With a thickness 32 B radii and some 300 operations a measured pair more.
+//!          divisions.
+
+pub mod thick;
 
 use super::{Entries, edge_edge_at, exclude, stride, vertex_face_at};
-use crate::abi::{Counters, NearArgs, NearExcludingArgs, NearHit, Output, Pair, ThickNearArgs, counter};
+use crate::abi::{Counters, NearArgs, NearExcludingArgs, NearHit, Output, Pair, counter};
 use crate::exec::{ALONE, Block, Lane, RowMap, WARP};
 use crate::math::Real;
-use crate::prim::near::{
-    Filter, Near, ThickFilter, edge_edge, thick_edge_edge, thick_vertex_face, vertex_face,
-};
+use crate::prim::near::{Filter, Near, edge_edge, vertex_face};
 use crate::queue::waiting::{Waiting, waiting_bytes};
 
 /// Lanes of a block whose pairs wait: one warp, whose barriers and numbering cost next to nothing.
@@ -93,44 +93,6 @@ fn both<R: Real, B: Block>(
         },
         |lane, pair, [x, y, z, w]| {
             edge_edge([x, y], [z, w], args.distance).filter(|_| !excludes_ee(lane, pair))
-        },
-    );
-}
-
-/// Both kinds, of vertices with a thickness, without pairs that the scene excludes.
-pub fn thick<R: Real, B: Block>(block: &mut B, args: &ThickNearArgs<R>) {
-    let ThickNearArgs { near, radii, tables } = args;
-    let vf = |lane: &B::Lane, pair: Pair| {
-        let [x, y, z] = lane.read(near.faces, pair.b);
-        [pair.a, x, y, z]
-    };
-    let ee = |lane: &B::Lane, pair: Pair| {
-        let [[x, y], [z, w]] = [pair.a, pair.b].map(|edge| lane.read(near.edges, edge));
-        [x, y, z, w]
-    };
-    let points = |lane: &B::Lane, of: [u32; 4]| of.map(|vertex| lane.read(near.positions, vertex));
-    // In f32 the radius of a point is rounded up.
-    let exact = |lane: &B::Lane, of: [u32; 4]| of.map(|vertex| lane.read(*radii, vertex));
-    each(
-        block,
-        None,
-        (near.vf, near.vf_hits, near.counters),
-        &ThickFilter::<R, true>::new(near.distance),
-        |lane, pair| points(lane, vf(lane, pair)),
-        |lane, pair, row| {
-            let found = thick_vertex_face(row.map(|p| p.at), exact(lane, vf(lane, pair)), near.distance);
-            found.filter(|_| !exclude::vertex_face(lane, tables, near.faces, pair))
-        },
-    );
-    each(
-        block,
-        None,
-        (near.ee, near.ee_hits, near.counters),
-        &ThickFilter::<R, false>::new(near.distance),
-        |lane, pair| points(lane, ee(lane, pair)),
-        |lane, pair, row| {
-            let found = thick_edge_edge(row.map(|p| p.at), exact(lane, ee(lane, pair)), near.distance);
-            found.filter(|_| !exclude::edge_edge(lane, tables, near.edges, pair))
         },
     );
 }
