@@ -27,13 +27,13 @@ class Watch:
         self.frames = 0
 
     def rows(self):
-        """The answer's columns, the number of vertex/face rows in front, and the crossing pairs."""
+        """The geometry of the answer's rows, their times, and the number of crossing pairs."""
         self.frames += 1
         if self.frames % 20 == 0:  # submissions do not rebuild by themselves
             self.detector.rebuild()
         while True:
             if not self.detector.is_prepared:
-                self.detector.prepare(self.inputs, [self.query])
+                self.detector.prepare(self.inputs, [self.query], geometry=True)
             self.detector.submit()
             answer = self.detector.on_device(self.query)
             first, second, short, invalid, crossing = torch.from_dlpack(answer.status).tolist()
@@ -43,13 +43,12 @@ class Watch:
                 break
             self.detector.collect(self.query)  # a buffer was too short: it grows
 
-        def column(name):
-            lists = [torch.from_dlpack(table[name]) for table in answer.lists]
-            if answer.is_ordered:  # one list, vertex/face rows in front
-                return lists[0][: first + second]
-            return torch.cat([lists[0][:first], lists[1][:second]])
-
-        return {name: column(name) for name in answer.lists[0]}, first, crossing
+        columns = {name: torch.from_dlpack(column) for name, column in answer.geometry.items()}
+        rows = {name: column[: first + second] for name, column in columns.items()}
+        times = [torch.from_dlpack(table["toi"]) for table in answer.lists if "toi" in table]
+        if len(times) == 2:  # on a CPU: vertex/face rows, then edge/edge rows
+            times = [torch.cat([times[0][:first], times[1][:second]])]
+        return rows, times[0][: first + second] if times else None, crossing
 
 
 def recorded(work, stream):
@@ -90,32 +89,15 @@ class Cloth:
         machine = nearmiss.Device(stream=stream) if stream else nearmiss.Device("cpu")
         self.near = Watch(scene, machine, {body: shared[0]}, nearmiss.Near(reach))
         self.guard = Watch(scene, machine, {body: tuple(shared)}, nearmiss.Continuous())
-        self.near.rows()
-        edges = torch.from_dlpack(self.near.detector.on_device(self.near.query).edges)
-        self.edges = edges.long().clone()
-        self.faces = on_device(np.concatenate([faces, ball_faces + self.own]))
-
-    def corners(self, rows, faces):
-        """The four vertices of each row; the first rows are vertex/face rows."""
-        a, b = rows["feature_a"].long(), rows["feature_b"].long()
-        vertex_face = torch.cat([a[:faces, None], self.faces[b[:faces]]], dim=1)
-        return torch.cat(
-            [vertex_face, torch.cat([self.edges[a[faces:]], self.edges[b[faces:]]], dim=1)]
-        )
 
     def contacts(self):
         """Pairs within reach: vertices, signed weights, normals, and the distances to keep."""
-        rows, faces, _ = self.near.rows()
-        vertices = self.corners(rows, faces)
-        u, v = rows["at"].unbind(dim=1)
-        one = torch.ones_like(u)
-        weights = torch.stack([1 - u, u, v - 1, -v], dim=1)
-        weights[:faces] = torch.stack([one, u + v - 1, -u, -v], dim=1)[:faces]
-        apart = (weights[..., None] * self.x[vertices]).sum(dim=1)
-        distance = apart.norm(dim=1)
+        rows, _, _ = self.near.rows()
+        distance = rows["distances"]
         wanted = (distance + drape.OPENING * self.thickness).clamp_max(self.thickness)
-        # Features that touch to the last bit have no normal: they are not pushed.
-        return vertices, weights, apart / distance.clamp_min(1e-30)[:, None], wanted
+        # Features that touch have no side from which they came: they are not pushed.
+        normals = rows["normals"] * (distance > 0)[:, None]
+        return rows["vertices"].long(), rows["signed_weights"], normals, wanted
 
     def solve(self, contacts):
         """Set the goal to the wanted end of the step, by XPBD."""
@@ -167,13 +149,13 @@ class Cloth:
         wish, part = self.goal - self.x, self.inverse_mass.clone()
         for attempt in range(sys.maxsize):
             torch.add(self.x, part[:, None] * wish, out=self.goal)
-            rows, faces, crossing = self.guard.rows()
-            vertices = self.corners(rows, faces)
+            rows, times, crossing = self.guard.rows()
+            vertices = rows["vertices"].long()
             moves = part[vertices] > 0
             if not moves.any():  # what rests cannot pass through
                 return part[: self.own], crossing
             way = drape.PART_OF_THE_WAY if attempt < drape.ATTEMPTS else 0.0
-            factor = (way * rows["toi"])[:, None].expand(-1, 4)
+            factor = (way * times)[:, None].expand(-1, 4)
             part *= torch.ones_like(part).scatter_reduce_(0, vertices[moves], factor[moves], "amin")
 
     def frame(self):
