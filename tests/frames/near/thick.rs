@@ -339,3 +339,28 @@ fn exclusions_take_thick_pairs_away() {
     assert!(all.is_subset(&without) && found.len() < all.len() && !found.is_empty());
     assert_eq!(found, all.difference(&excluded).copied().collect());
 }
+
+/// The second launch is that of radii that differ, and of exclusions: one radius has the first alone.
+#[test]
+fn a_second_launch_is_of_radii_that_differ_and_of_exclusions() {
+    use nearmiss::scene::Exclusions;
+    use nearmiss::{Detector, Scene};
+    let body = turned(&scene::draped(100).expect("a scene"));
+    let launches = |body: Body, ring: Option<u32>| {
+        let mut scene = Scene::new();
+        let id = scene.add(body);
+        scene.exclude(id, Exclusions { ring, ..Exclusions::default() }).expect("exclusions");
+        let mut detector = Detector::new(engine(), scene).expect("a detector");
+        let plan = detector.plan(&Query::near(0.0625)).expect("a plan");
+        let kernels = plan.frame.iter().flat_map(|stage| &stage.kernels);
+        let names = kernels.map(|kernel| kernel.kernel.to_string());
+        names.filter(|name| name.starts_with("narrow_near")).collect::<Vec<_>>()
+    };
+    let (first, second) = ("narrow_near_thick_f64", "narrow_near_open_f64");
+    let radii = uneven(&body, 0.125, 2);
+    assert_eq!(launches(body.clone(), None), ["narrow_near_f64"]);
+    assert_eq!(launches(body.clone(), Some(1)), ["narrow_near_excluding_f64"]);
+    assert_eq!(launches(body.clone().with_thickness(0.0625), None), [first]);
+    assert_eq!(launches(body.clone().with_thickness(0.0625), Some(1)), [first, second]);
+    assert_eq!(launches(body.with_thickness(radii), None), [first, second]);
+}
