@@ -99,6 +99,8 @@ pub trait Precision: Real + Send {
     type Separate32: Entry<Args = RungArgs<Self>>;
     /// Separation, in f64.
     type Separate64: Entry<Args = RungArgs<Self>>;
+    /// Separation by the largest radius, in f32: parts pairs of features whose radii differ.
+    type Part: Entry<Args = ThickRungArgs<Self>>;
     /// Separation of features whose radii differ.
     type SeparateThick: Entry<Args = ThickRungArgs<Self>>;
 
@@ -161,6 +163,7 @@ impl Precision for f32 {
     type ApproachAdvance = entry::narrow_approach_advance_f32;
     type Separate32 = entry::narrow_separate_f32_f32;
     type Separate64 = entry::narrow_separate_f32_f64;
+    type Part = entry::narrow_part_f32;
     type SeparateThick = entry::narrow_separate_thick_f32;
 
     fn points(positions: &Positions) -> impl Iterator<Item = Vec3<f32>> {
@@ -229,6 +232,7 @@ impl Precision for f64 {
     type ApproachAdvance = entry::narrow_approach_advance_f64;
     type Separate32 = entry::narrow_separate_f64_f32;
     type Separate64 = entry::narrow_separate_f64_f64;
+    type Part = entry::narrow_part_f64;
     type SeparateThick = entry::narrow_separate_thick_f64;
 
     fn points(positions: &Positions) -> impl Iterator<Item = Vec3<f64>> {

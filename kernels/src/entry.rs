@@ -202,6 +202,8 @@ kernels! {
     narrow_separate_f32_f64: separate::separate::<f32, B>, [RungArgs<f32>], RUNG, separate::shared_bytes(RUNG);
     narrow_separate_f64_f32: abreast::abreast::<f64, B>, [RungArgs<f64>], RUNG, abreast::shared_bytes(RUNG);
     narrow_separate_f64_f64: separate::separate::<f64, B>, [RungArgs<f64>], RUNG, separate::shared_bytes(RUNG);
+    narrow_part_f32: abreast::part::<f32, B>, [ThickRungArgs<f32>], RUNG, abreast::shared_bytes(RUNG), registers = 128;
+    narrow_part_f64: abreast::part::<f64, B>, [ThickRungArgs<f64>], RUNG, abreast::shared_bytes(RUNG);
     narrow_separate_thick_f32: separate::thick::<f32, B>, [ThickRungArgs<f32>], RUNG, separate::shared_bytes(RUNG);
     narrow_separate_thick_f64: separate::thick::<f64, B>, [ThickRungArgs<f64>], RUNG, separate::shared_bytes(RUNG);
     narrow_approach_f32: approach::approach::<f32, B>, [ThickRungArgs<f32>], NARROW, 0;

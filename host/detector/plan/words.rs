@@ -18,7 +18,7 @@ pub const STAGES: [(&str, &str); 10] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 109] = [
+const KERNELS: [(&str, &str); 110] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
     ("place_turns", "rotation vectors and paths of bodies that turn"),
     ("place", "poses applied, uploads put in place, other bodies at rest"),
@@ -97,6 +97,7 @@ const KERNELS: [(&str, &str); 109] = [
     ("narrow_approach_exact", "the same in integers, of pairs left uncertain"),
     ("narrow_approach_advance", "times at which others do, by advancement"),
     ("narrow_approach", "pairs that are near at the start"),
+    ("narrow_part", "supporting planes, by the largest radius of each pair"),
     ("narrow_separate_thick", "supporting planes, of radii that differ"),
     ("narrow_separate", "supporting planes"),
     ("narrow_divide", "candidates of bodies that turn, and the others"),

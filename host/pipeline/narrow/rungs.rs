@@ -29,6 +29,8 @@ enum Rung {
     Separate32,
     /// Separation, in f64.
     Separate64,
+    /// Separation by the largest radius of each pair, in f32: only parts pairs.
+    Part,
     /// Separation of features whose radii differ, in f64.
     SeparateThick,
     /// Before all others: features that are near at the start, if they must come nearer.
@@ -61,7 +63,7 @@ impl Rung {
     /// Returns which of these lists its undecided pairs go to.
     fn left(self) -> usize {
         match self {
-            Rung::Isolate32 | Rung::Separate32 => 0,
+            Rung::Isolate32 | Rung::Separate32 | Rung::Part => 0,
             Rung::Isolate64 | Rung::Settle | Rung::Slice | Rung::Separate64 | Rung::SeparateThick => 1,
             Rung::ApproachExact | Rung::ApproachAdvance => 2,
             Rung::Approach => 3,
@@ -131,18 +133,21 @@ impl Rungs {
         Ok(Rungs { certified, rungs, left, names, asked, advancing, tolerances, radii, held: Vec::new() })
     }
 
-    /// Makes them the one rung of vertices whose thickness differs within a body: in f64, to the last
-    /// list. Pairs that approach are still sorted out before it.
+    /// Makes them the rungs of vertices whose thickness differs within a body, with the same lists
+    /// between them. In f32 a rung parts pairs; in f64 one decides the others. Pairs that approach
+    /// are still sorted out before.
     ///
     /// # Errors
     /// Device errors.
     pub fn thicken(&mut self, device: &Device, radii: &[f64]) -> Result<(), Error> {
         self.radii = device.of(purpose::RADII).upload(radii)?;
-        self.rungs.retain(|rung| rung.is_before());
-        self.left.truncate(self.rungs.len());
-        self.names.truncate(self.rungs.len());
-        self.rungs.push(Rung::SeparateThick);
-        self.asked = None;
+        for rung in &mut self.rungs {
+            *rung = match *rung {
+                Rung::Separate32 => Rung::Part,
+                Rung::Separate64 => Rung::SeparateThick,
+                other => other,
+            };
+        }
         Ok(())
     }
 
@@ -320,6 +325,7 @@ fn start<R: Precision>(
         Rung::ApproachSigns => spread::<R::ApproachSigns>(device, capacity, &thick()),
         Rung::ApproachExact => spread::<R::ApproachExact>(device, capacity, &thick()),
         Rung::ApproachAdvance => spread::<R::ApproachAdvance>(device, capacity, &thick()),
+        Rung::Part => launch::at_once::<R::Part>(device, capacity, &thick()),
         Rung::SeparateThick => launch::at_once::<R::SeparateThick>(device, capacity, &thick()),
     }
 }

@@ -229,7 +229,7 @@ arguments! {
         /// Zero.
         pad: u32,
     }
-    /// `narrow_separate_thick`: the pairs that come within a separation and their radii.
+    /// `narrow_part`, `narrow_separate_thick`: the pairs that come within a separation and their radii.
     /// `narrow_approach`, `narrow_approach_signs`, `narrow_approach_exact`,
     /// `narrow_approach_advance`: those that come nearer than at the start.
     ThickRungArgs<R: Real> {

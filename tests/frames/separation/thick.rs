@@ -34,11 +34,11 @@ fn verdict<R: Real>(features: Features, ends: Ends, radii: [f64; 4], p: &Params)
     let mut under_way = match features {
         Features::VertexFace => {
             let radii = [ra + rb, ra + rc, ra + rd, ra + rd];
-            Uneven::begin(&Face::<f64>::new(a, [b, c, d], p).of_four(), radii, p)
+            Uneven::begin(&Face::<f64>::new(a, [b, c, d], p).of_four(), radii, 0.0, p)
         }
         Features::EdgeEdge => {
             let radii = [ra + rc, ra + rd, rb + rc, rb + rd];
-            Uneven::begin(&Edges::<f64>::new([a, b], [c, d], p), radii, p)
+            Uneven::begin(&Edges::<f64>::new([a, b], [c, d], p), radii, 0.0, p)
         }
     };
     loop {
@@ -334,4 +334,28 @@ fn what_a_thickness_cannot_be_is_refused() {
     assert_eq!(detector.query(&continuous(0.0)).expect("an answer").hash(), before);
     detector.set_thickness(id, 0.2).expect("a thickness");
     assert_ne!(detector.query(&continuous(0.0)).expect("an answer").hash(), before);
+}
+
+/// Radii that differ have two rungs of their own: f32 only parts pairs. One radius has those of a
+/// separation.
+#[test]
+fn radii_that_differ_have_rungs_of_their_own() {
+    use nearmiss::{Detector, Scene};
+    let body = soup(40, 7);
+    let uneven: Vec<f64> = (0..body.vertex_count()).map(|v| 0.03125 * (v % 3) as f64).collect();
+    let rungs = |thickness: nearmiss::Thickness, solver: Solver| {
+        let scene = Scene::from(body.clone().with_thickness(thickness));
+        let mut detector = Detector::new(engine(), scene).expect("a detector");
+        let query = asking(QueryKind::Continuous, solver, 0.03125);
+        let plan = detector.plan(&query).expect("a plan");
+        let kernels = plan.frame.iter().flat_map(|stage| &stage.kernels);
+        let names = kernels.map(|kernel| kernel.kernel.to_string());
+        let is_rung = |name: &String| name.starts_with("narrow_part") || name.starts_with("narrow_separate");
+        names.filter(is_rung).collect::<Vec<_>>()
+    };
+    let last = "narrow_separate_thick_f32";
+    assert_eq!(rungs(uneven.clone().into(), Solver::Certified), ["narrow_part_f32", last]);
+    assert_eq!(rungs(uneven.into(), Solver::CertifiedF64), [last]);
+    let even = rungs(0.03125.into(), Solver::Certified);
+    assert_eq!(even, ["narrow_separate_f32_f32", "narrow_separate_f32_f64"]);
 }

@@ -80,6 +80,10 @@ impl Single {
     }
 }
 
+/// No time is known that well: then the only verdict in f32 is that a pair is farther apart
+/// throughout. For a separation that is larger than the pair's own.
+pub const NO_TIME: f32 = f32::NAN;
+
 /// The verdict in f32, if a time is known that well; else the next rung decides.
 #[inline(always)]
 pub fn verdict(told: Advanced<f32>, known: f32, p: &Params) -> Option<Verdict> {

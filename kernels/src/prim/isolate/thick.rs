@@ -87,9 +87,12 @@ pub struct Uneven {
 }
 
 impl Uneven {
-    /// At the start. Radii are those of the control vectors, in the unit of the scene.
+    /// From a time before which the features are certainly farther apart. Radii are those of the
+    /// control vectors, in the unit of the scene.
     #[inline(always)]
-    pub fn begin(pair: &Pair<f64, 4>, radii: [f64; 4], p: &Params) -> Self {
+    pub fn begin(pair: &Pair<f64, 4>, radii: [f64; 4], from: f64, p: &Params) -> Self {
+        // A number that is no time of the step proves nothing.
+        let from = if from >= 0.0 && from <= pair.end { from } else { 0.0 };
         let slack = pair.scaled(p.tolerance).max(f64::ADVANCE_FINEST * pair.reach);
         Uneven {
             hull: pair.hull(),
@@ -97,8 +100,8 @@ impl Uneven {
             separation: pair.scaled(p.min_separation),
             slack,
             time_tolerance: pair.time_tolerance(slack),
-            at: 0.0,
-            stride: pair.end,
+            at: from,
+            stride: pair.end - from,
             end: pair.end,
             steps: 0,
             // Nothing is known of what is not finite.
@@ -285,5 +288,108 @@ impl Uneven {
             next = if reaches { next.min(root) } else { next };
         }
         if is_farther { Some(next) } else { None }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::separation::{NO_TIME, Single, proven, verdict};
+    use super::super::{Edges, Face};
+    use super::*;
+    use crate::prim::cubic::Moving;
+
+    /// Numbers in [-1, 1), by xorshift.
+    struct Numbers(u64);
+
+    impl Numbers {
+        fn next(&mut self) -> f64 {
+            self.0 ^= self.0 << 13;
+            self.0 ^= self.0 >> 7;
+            self.0 ^= self.0 << 17;
+            (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        }
+        fn point(&mut self) -> Vec3<f64> {
+            Vec3([self.next(), self.next(), self.next()])
+        }
+    }
+
+    /// A pair, in both precisions, whose features pass each other, and the radii of its vertices.
+    fn pair(numbers: &mut Numbers, is_face: bool, p: &Params) -> (Pair<f32, 4>, Pair<f64, 4>, [f64; 4]) {
+        let way = numbers.point() * 2.0;
+        let mut vertex = |by: f64| {
+            let t0 = numbers.point();
+            Moving { t0, t1: t0 + way * by + numbers.point() * 0.25 }
+        };
+        let [a, b, c, d] = [vertex(1.0), vertex(if is_face { 0.0 } else { 1.0 }), vertex(0.0), vertex(0.0)];
+        let [ra, rb, rc, rd] = core::array::from_fn(|_| 0.1 + 0.09 * numbers.next());
+        if is_face {
+            let (single, double) =
+                (Face::new(a, [b, c, d], p).of_four(), Face::new(a, [b, c, d], p).of_four());
+            (single, double, [ra + rb, ra + rc, ra + rd, ra + rd])
+        } else {
+            let (single, double) = (Edges::new([a, b], [c, d], p), Edges::new([a, b], [c, d], p));
+            (single, double, [ra + rc, ra + rd, rb + rc, rb + rd])
+        }
+    }
+
+    /// The time that f32 proves with the largest radius; `None` of a pair that it parts.
+    fn begun(pair: &Pair<f32, 4>, radii: [f64; 4], p: &Params) -> Option<f64> {
+        let largest = radii.into_iter().fold(0.0, f64::max);
+        let p = Params { min_separation: p.min_separation + largest, ..*p };
+        let mut single = Single::begin(pair, &p);
+        loop {
+            let told = match single.fixed(&p) {
+                Ok(told) => Some(told),
+                Err(ahead) => single.ahead(ahead, &p, || pair.normal()),
+            };
+            if let Some(told) = told {
+                return if verdict(told, NO_TIME, &p).is_some() { None } else { Some(proven(told)) };
+            }
+        }
+    }
+
+    /// All of a rung in f64, from a time.
+    fn decided(pair: &Pair<f64, 4>, radii: [f64; 4], from: f64, p: &Params) -> Verdict {
+        let mut under_way = Uneven::begin(pair, radii, from, p);
+        loop {
+            if let Some(verdict) = under_way.step(p) {
+                return verdict;
+            }
+        }
+    }
+
+    #[test]
+    fn what_the_largest_radius_parts_or_proves_is_never_within() {
+        let (mut numbers, mut seen) = (Numbers(0x2545_f491_4f6c_dd1d), [0; 4]);
+        let p = Params { min_separation: 0.01, ..Params::new(1e-4) };
+        for i in 0..3000 {
+            let (single, double, radii) = pair(&mut numbers, i % 2 == 0, &p);
+            let from = begun(&single, radii, &p);
+            let all = decided(&double, radii, 0.0, &p);
+            let whole = Uneven::begin(&double, radii, 0.0, &p);
+            let until = from.unwrap_or(2.0);
+            for t in (0..=64).map(|k| f64::from(k) / 64.0).filter(|&t| t < until) {
+                assert!(!whole.is_within(t), "{i}: within at {t}, before {until}");
+            }
+            let Some(from) = from else {
+                seen[0] += 1;
+                assert!(!all.is_contact(), "{i}: {all:?}");
+                continue;
+            };
+            let rest = decided(&double, radii, from, &p);
+            seen[1] += u32::from(from > 0.0);
+            seen[2] += u32::from(rest.is_contact());
+            seen[3] += u32::from(rest.is_separated());
+            assert!(rest.is_separated() || rest.toi >= from, "{i}: {rest:?} from {from}");
+            assert!(!(rest.is_contact() && all.is_separated()), "{i}: {rest:?} {all:?}");
+            assert!(!(rest.is_separated() && all.is_contact()), "{i}: {rest:?} {all:?}");
+            // No contact is later than the other one certainly is.
+            let apart = rest.is_contact() && all.is_contact();
+            assert!(
+                !apart || (rest.toi <= all.toi_upper && all.toi <= rest.toi_upper),
+                "{i}: {rest:?} {all:?}"
+            );
+        }
+        assert!(seen.iter().all(|&count| count > 50), "{seen:?}");
     }
 }

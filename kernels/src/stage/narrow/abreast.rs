@@ -4,13 +4,19 @@
 //!          in length. So a block keeps more pairs under way than it has lanes. Each turn takes
 //!          one a lane, those that have waited longest, and all lanes do the same.
 //!          A block's pairs are eight together, then a grid of such groups apart.
+//!          Pairs of vertices with different radii have a kernel of their own, [`part`]. It only parts
+//!          pairs, by the separation and the largest radius of each pair.
 //! Reads    pairs, faces or edges, positions of both frames (four vertices); tolerances of bodies,
-//!          if they differ.
+//!          if they differ; radii, with such vertices.
 //! Writes   contacts and undecided pairs with bounds of toi; or the earliest. The rest, in its own
-//!          list, each with the time before which it is certainly farther apart.
+//!          list, each with the time before which it is certainly farther apart. [`part`] only
+//!          the rest.
 //! Before   pairs are complete.
 //! After    {pairs that come within the separation} ⊆ listed ∪ begun; no time is late. See
 //!          [`crate::prim::isolate::advance`].
+//!          With radii: {pairs that come within the separation and both radii} ⊆ begun. No point of
+//!          a pair has more than its largest radius, so pairs and times that are proven for it are
+//!          proven.
 //! Room     hits, begun: counted past the end, grown, run again. Pairs under way: new ones are taken
 //!          up only as there is room.
 //! Cost     8 B pair, 12 B indices, 128 B positions (gathered). 200 B on chip for a pair under way.
@@ -18,14 +24,15 @@
 //!          others in two to fifteen.
 
 use super::climb::emit;
-use super::{edge_edge, of_edge_edge, of_vertex_face, vertex_face};
-use crate::abi::{Begun, Pair, RungArgs};
+use super::{edge_edge, of_edge_edge, of_vertex_face, radii_of_edges, radii_of_face, vertex_face};
+use crate::abi::{Begun, Pair, RungArgs, ThickRungArgs};
 use crate::exec::{Block, Lane, Shared};
 use crate::math::{Real, Vec3};
+use crate::prim::inclusion::Params;
 use crate::prim::isolate::advance::{Advanced, Distance, Progress};
 use crate::prim::isolate::hull::Hull;
 use crate::prim::isolate::normal::{NUMBERS, Normal};
-use crate::prim::isolate::separation::{Single, proven, verdict};
+use crate::prim::isolate::separation::{NO_TIME, Single, proven, verdict};
 use crate::prim::isolate::{Edges, Face};
 
 /// Words of eight bytes of a pair under way.
@@ -56,9 +63,75 @@ pub const fn shared_bytes(lanes: u32) -> u32 {
     room(lanes) * (8 * WORDS + 4) + 4 * TURNS * lanes + 8
 }
 
+/// The arguments of a kernel, and what it does with a pair.
+trait Abreast<R: Real, L: Lane> {
+    /// Whether it only parts pairs, and leaves all others.
+    const PARTS: bool;
+    /// Arguments of every rung.
+    fn rung(&self) -> &RungArgs<R>;
+    /// Parameters of a vertex and a face.
+    fn of_face(&self, lane: &L, pair: Pair) -> Params;
+    /// Parameters of two edges.
+    fn of_edges(&self, lane: &L, pair: Pair) -> Params;
+}
+
+impl<R: Real, L: Lane> Abreast<R, L> for RungArgs<R> {
+    const PARTS: bool = false;
+    #[inline(always)]
+    fn rung(&self) -> &RungArgs<R> {
+        self
+    }
+    #[inline(always)]
+    fn of_face(&self, lane: &L, pair: Pair) -> Params {
+        of_vertex_face(lane, self, pair)
+    }
+    #[inline(always)]
+    fn of_edges(&self, lane: &L, pair: Pair) -> Params {
+        of_edge_edge(lane, self, pair)
+    }
+}
+
+impl<R: Real, L: Lane> Abreast<R, L> for ThickRungArgs<R> {
+    const PARTS: bool = true;
+    #[inline(always)]
+    fn rung(&self) -> &RungArgs<R> {
+        &self.rung
+    }
+    #[inline(always)]
+    fn of_face(&self, lane: &L, pair: Pair) -> Params {
+        let radii = radii_of_face(lane, self.radii, self.rung.faces, pair);
+        of_largest(of_vertex_face(lane, &self.rung, pair), &self.rung.params, radii)
+    }
+    #[inline(always)]
+    fn of_edges(&self, lane: &L, pair: Pair) -> Params {
+        let radii = radii_of_edges(lane, self.radii, self.rung.edges, pair);
+        of_largest(of_edge_edge(lane, &self.rung, pair), &self.rung.params, radii)
+    }
+}
+
+/// Parameters of a pair whose separation is that of the query, and the largest radius of a control
+/// vector.
+#[inline(always)]
+fn of_largest(of_bodies: Params, query: &Params, [a, b, c, d]: [f64; 4]) -> Params {
+    let largest = a.greater(b).greater(c.greater(d));
+    Params { min_separation: query.min_separation + largest, ..of_bodies }
+}
+
 /// All pairs of both lists.
 #[inline(always)]
 pub fn abreast<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
+    each::<R, B, RungArgs<R>>(block, args);
+}
+
+/// All pairs of both lists, of vertices with different radii: only parts them.
+#[inline(always)]
+pub fn part<R: Real, B: Block>(block: &mut B, args: &ThickRungArgs<R>) {
+    each::<R, B, ThickRungArgs<R>>(block, args);
+}
+
+#[inline(always)]
+fn each<R: Real, B: Block, A: Abreast<R, B::Lane>>(block: &mut B, of_kernel: &A) {
+    let args = of_kernel.rung();
     let (lanes, blocks, number) = (block.lanes(), block.blocks() as u64, block.block() as u64);
     let count_vf = args.vf.pairs.listed(block);
     let count = count_vf as u64 + args.ee.pairs.listed(block) as u64;
@@ -81,13 +154,13 @@ pub fn abreast<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
                     let place = line.begin(lane, some);
                     if i < count_vf as u64 {
                         let pair = args.vf.pairs.get(lane, i as u32);
-                        let p = of_vertex_face(lane, args, pair);
+                        let p = of_kernel.of_face(lane, pair);
                         let (v, f) = vertex_face(lane, &args.frames, args.faces, pair);
                         let face = Face::new(v, f, &p).of_four();
                         line.put(lane, place, &Single::begin(&face, &p), &face.normal(), pair);
                     } else {
                         let pair = args.ee.pairs.get(lane, (i - count_vf as u64) as u32);
-                        let p = of_edge_edge(lane, args, pair);
+                        let p = of_kernel.of_edges(lane, pair);
                         let [x, y] = edge_edge(lane, &args.frames, args.edges, pair);
                         let edges = Edges::new(x, y, &p);
                         line.put(lane, place, &Single::begin(&edges, &p), &edges.normal(), pair);
@@ -122,7 +195,8 @@ pub fn abreast<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
             if let Some((place, single)) = under_way {
                 if let Some(told) = told {
                     let pair = line.pair(lane, place);
-                    match (verdict(told, single.known, &args.params), single.hull.is_face) {
+                    let known = if A::PARTS { NO_TIME } else { single.known };
+                    match (verdict(told, known, &args.params), single.hull.is_face) {
                         (Some(verdict), true) => emit(lane, args, &args.vf, pair, verdict),
                         (Some(verdict), false) => emit(lane, args, &args.ee, pair, verdict),
                         (None, true) => args.vf.begun.push(lane, for_double(pair, told)),

@@ -5,6 +5,7 @@
 //!          then the next.
 //!          A finished lane draws the next pair of its block, so few lanes idle.
 //!          A block's pairs are a grid apart. The kinds begin at opposite ends of the grid.
+//!          Pairs of vertices with different radii have a kernel of their own, [`thick`].
 //! Reads    pairs, those of `abreast` with a time; faces or edges, positions of both frames (four
 //!          vertices); tolerances of bodies, if they differ; radii, with a thickness.
 //! Writes   contacts and undecided pairs with bounds of toi; or the earliest.
@@ -178,7 +179,7 @@ impl Thick {
         if is_even(radii) {
             Thick::Even(Double::begin(pair, from, p))
         } else {
-            Thick::Uneven(Uneven::begin(&pair, radii, p))
+            Thick::Uneven(Uneven::begin(&pair, radii, from, p))
         }
     }
 }
