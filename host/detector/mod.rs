@@ -4,6 +4,7 @@ mod approaching;
 mod caveats;
 mod edits;
 mod engine;
+mod extras;
 mod figures;
 mod first;
 mod frame;

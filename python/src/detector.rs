@@ -3,15 +3,12 @@
 use crate::answer::Answer;
 use crate::asked::{Asked, Does};
 use crate::device::Device;
-use crate::errors::raised;
 use crate::exclusions;
 use crate::geometry;
-use crate::grouped::extras_of;
 use crate::key::{self, Key, Pairs, body_of, numbers, pairs_of};
-use crate::on_device::{DeviceAnswer, Owner};
 use crate::pairs::Curves;
 use crate::pose::Pose;
-use crate::query::{Query, queries_of};
+use crate::query::Query;
 use crate::scene::Body;
 use crate::thickness::thickness_of;
 use crate::turns::python;
@@ -147,75 +144,6 @@ impl Detector {
     fn plan<'py>(&self, py: Python<'py>, query: &Query) -> Answered<'py> {
         let query = query.query;
         python(py, &self.run(py, Does::Queries, |detector| detector.plan(&query))?)
-    }
-
-    /// Prepare submissions: run the queries, load every kernel and take all memory.
-    ///
-    /// After it, `submit` allocates nothing and waits for nothing, until another call changes the
-    /// detector.
-    ///
-    /// - `inputs`: as of `update`, arrays that stay where they are: of the GPU, or packed numpy
-    ///   arrays on a CPU. Write new positions into them. They are held while prepared.
-    /// - `queries`: a list of queries, answered by every submission. No two may differ in numbers
-    ///   alone.
-    /// - `geometry`, `least_by_vertex`, `grouped`: parts of the answers that submissions also make on
-    ///   the device. `on_device` has them. `grouped` has "vertex", "edge", "face" or "corner".
-    #[pyo3(signature = (inputs, queries, *, geometry = false, least_by_vertex = false, grouped = Vec::new()))]
-    fn prepare(
-        &self,
-        py: Python<'_>,
-        inputs: &Bound<'_, PyAny>,
-        queries: &Bound<'_, PyAny>,
-        geometry: bool,
-        least_by_vertex: bool,
-        grouped: Vec<String>,
-    ) -> PyResult<()> {
-        let extras = extras_of(geometry, least_by_vertex, &grouped)?;
-        self.prepared(py, inputs, &queries_of(queries)?, &extras)
-    }
-
-    /// Whether `submit` may be called, and a graph that recorded it launched again.
-    #[getter]
-    fn is_prepared(&self, py: Python<'_>) -> PyResult<bool> {
-        self.look(py, nearmiss::Detector::is_prepared)
-    }
-
-    /// Launch the prepared queries on the device's stream, and return at once.
-    ///
-    /// A graph may record it (torch.cuda.graph, cupy). On a CPU it is done when it returns. Raises
-    /// InvalidArgumentError if the detector is not prepared.
-    fn submit(&self, py: Python<'_>) -> PyResult<()> {
-        if self.device.get().device.is_gpu() {
-            // Launches alone, and by the thread that may capture them.
-            let done = py.detach(|| {
-                let (mut one, _turn) = (self.locked(), self.device.get().turn());
-                one.count(Does::Submits);
-                (one.detector.submit(), one.unread())
-            });
-            return done.0.map_err(raised);
-        }
-        self.run(py, Does::Submits, nearmiss::Detector::submit)
-    }
-
-    /// Return the answer to a prepared query in device memory; None if it is not prepared.
-    ///
-    /// None also if no two bodies may meet.
-    fn on_device(detector: Bound<'_, Self>, query: &Query) -> PyResult<Option<DeviceAnswer>> {
-        let own = detector.get();
-        let (answer, asked) =
-            own.look_at(detector.py(), |one| (one.detector.on_device(&query.query), one.asked))?;
-        let Some(answer) = answer else { return Ok(None) };
-        let device = own.device.get().device.clone();
-        Ok(Some(DeviceAnswer { answer, device, owner: Owner::One(detector.unbind()), asked }))
-    }
-
-    /// Wait for the last submission, and return the answer to one of its queries.
-    ///
-    /// If a list was too short it grows and the query runs again: the answer is whole, and the
-    /// detector is no longer prepared. A query that was not prepared runs too.
-    fn collect<'py>(&self, py: Python<'py>, query: &Query) -> Answered<'py> {
-        let query = query.query;
-        self.answer(py, Does::Collects(query), Vec::new(), |detector| detector.collect(&query))
     }
 
     /// Rebuild tiles and trees: pays if bodies have moved far from where they were built.

@@ -13,7 +13,11 @@ use pyo3::prelude::*;
 type Grouped<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<u32>>);
 
 /// Parts of answers that submissions also make on the device.
-pub fn extras_of(geometry: bool, least_by_vertex: bool, grouped: &[String]) -> PyResult<DeviceExtras> {
+pub fn extras_of(
+    geometry: bool,
+    least_by_vertex: bool,
+    grouped: Option<Vec<String>>,
+) -> PyResult<DeviceExtras> {
     let mut extras = DeviceExtras::default();
     if geometry {
         extras = extras.with_geometry();
@@ -21,6 +25,7 @@ pub fn extras_of(geometry: bool, least_by_vertex: bool, grouped: &[String]) -> P
     if least_by_vertex {
         extras = extras.with_least_by_vertex();
     }
+    let grouped = grouped.unwrap_or_default();
     grouped.iter().try_fold(extras, |extras, name| Ok(extras.grouped_by(by_of(name)?)))
 }
 

@@ -33,6 +33,7 @@ mod research;
 mod rows;
 mod scene;
 mod several;
+mod submissions;
 mod thickness;
 mod turns;
 mod watch;

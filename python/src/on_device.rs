@@ -222,7 +222,7 @@ const NEAREST_TRIANGLES: &[Column] = &[
     ("points", 48, REAL, &[2, 3]),
 ];
 
-/// Of `nearmiss::contacts::on_device::RowGeometry`, of 128 bytes.
+/// Columns of `nearmiss::contacts::on_device::RowGeometry`, of 128 bytes.
 const GEOMETRY: &[Column] = &[
     ("distances", 0, REAL, &[]),
     ("normals", 8, REAL, &[3]),

@@ -199,7 +199,7 @@ impl MultiDetector {
     ///
     /// Arrays may be on any of the GPUs; every submission copies them to the others. The work is
     /// divided by what it costs now, until the next preparation.
-    #[pyo3(signature = (inputs, queries, *, geometry = false, least_by_vertex = false, grouped = Vec::new()))]
+    #[pyo3(signature = (inputs, queries, *, geometry = false, least_by_vertex = false, grouped = None))]
     fn prepare(
         &self,
         py: Python<'_>,
@@ -207,9 +207,9 @@ impl MultiDetector {
         queries: &Bound<'_, PyAny>,
         geometry: bool,
         least_by_vertex: bool,
-        grouped: Vec<String>,
+        grouped: Option<Vec<String>>,
     ) -> PyResult<()> {
-        let extras = extras_of(geometry, least_by_vertex, &grouped)?;
+        let extras = extras_of(geometry, least_by_vertex, grouped)?;
         let (queries, frame) = (queries_of(queries)?, self.frame_of(py, inputs, true)?);
         let (given, held) = (frame.on_device()?, frame.held);
         let (done, unread) = self

@@ -57,3 +57,59 @@ def test_what_has_no_such_rows_is_refused(detector):
         detector.grouped(detector.discrete(), 0, "vertex")
     with pytest.raises(nm.InvalidArgumentError, match="no time and no distance"):
         detector.least_by_vertex(detector.discrete(), 0)
+
+
+def on_device(query, **parts):
+    """The parts of a submitted answer as arrays, the status, the collected answer and its detector."""
+    rng = np.random.default_rng(3)
+    x0 = rng.random((90, 3)) + np.repeat(rng.random((30, 3)), 3, axis=0)
+    x1 = x0 + 0.2 * rng.random((90, 3))
+    scene = nm.Scene(nm.Body(x0, np.arange(90).reshape(30, 3)))
+    scene.add(nm.Body(LOW / 2, [[0, 1, 2]], kind="fixed"))
+    own = nm.Detector(scene, device=CPU)
+    own.prepare({0: (x0, x1)}, [query], **parts)
+    own.submit()
+    answer = own.on_device(query)
+    status = np.from_dlpack(answer.status)
+    return own, answer, int(status[:2].sum()), own.collect(query)
+
+
+@pytest.mark.parametrize("query", [nm.Near(0.1), nm.Continuous(), nm.Continuous(min_separation=0.01)])
+def test_parts_on_the_device_are_those_of_the_host(query):
+    names = ["vertex", "edge", "face", "corner"]
+    own, answer, count, found = on_device(query, geometry=True, least_by_vertex=True, grouped=names)
+    assert len(found) == count > 20 and list(answer.grouped) == names
+    geometry = {name: np.from_dlpack(column) for name, column in answer.geometry.items()}
+    wanted, starts = own.geometry(found), answer.starts
+    vertices = wanted.vertices + starts[:, 0][wanted.owner]
+    # Rows of a CPU are in no order: they are compared by their vertices and weights.
+    order = lambda vertices, weights: np.lexsort([*weights.T, *vertices.T])
+    mine = order(geometry["vertices"][:count], geometry["signed_weights"][:count])
+    theirs = order(vertices, wanted.signed_weights)
+    for name in ("signed_weights", "points", "normals", "distances"):
+        assert np.array_equal(geometry[name][:count][mine], getattr(wanted, name)[theirs]), name
+        assert not geometry[name][count:].any(), name
+    assert np.array_equal(geometry["vertices"][:count][mine], vertices[theirs])
+    least = np.from_dlpack(answer.least_by_vertex)
+    assert np.array_equal(least, np.concatenate([own.least_by_vertex(found, body) for body in (0, 1)]))
+    place = np.empty(count, int)
+    place[theirs] = mine
+    for name in names:
+        begins, rows = map(np.from_dlpack, answer.grouped[name])
+        groups = [(place[own_rows[a:b]], body) for body in (0, 1) for own_begins, own_rows in [own.grouped(found, body, name)]
+                  for a, b in zip(own_begins, own_begins[1:])]
+        assert len(groups) == len(begins) - 1
+        for feature, (group, _) in enumerate(groups):
+            assert np.array_equal(rows[begins[feature] : begins[feature + 1]], np.sort(group)), (name, feature)
+        assert (rows[begins[-1] :] == -1).all()
+
+
+def test_parts_that_were_not_requested_are_absent():
+    _, answer, _, _ = on_device(nm.Near(0.1))
+    assert answer.geometry is None and answer.least_by_vertex is None and answer.grouped == {}
+    _, answer, _, _ = on_device(nm.Discrete(), grouped=["face"])
+    assert list(answer.grouped) == ["face"] and answer.geometry is None
+    with pytest.raises(nm.InvalidArgumentError, match="geometry of rows in device memory"):
+        on_device(nm.Discrete(), geometry=True)
+    with pytest.raises(nm.InvalidArgumentError, match="by is unknown"):
+        on_device(nm.Near(0.1), grouped=["line"])

@@ -194,6 +194,12 @@ def choices():
     yield ("Body.__new__", "kind"), listed(lambda: nm.Body(vertices, faces, kind="x"))
     queries = [nm.Discrete(), nm.Continuous(), nm.Near(1)]
     yield ("configure", "solver"), set().union(*(listed(lambda: research.configure(q, solver="x")) for q in queries))
+    body, cpu = nm.Body(vertices, faces), nm.Device("cpu")
+    for own in (nm.Detector(body, device=cpu), nm.MultiDetector(body, [cpu, cpu])):
+        name = type(own).__name__
+        found = own.query(nm.Near(1))
+        yield (f"{name}.grouped", "by"), listed(lambda: own.grouped(found, 0, "x"))
+        yield (f"{name}.prepare", "grouped"), listed(lambda: own.prepare({}, [nm.Near(1)], grouped=["x"]))
     for name in ["broad_phase", "bounding_volume", "rebuild"]:
         yield ("configure", name), listed(lambda: research.configure(nm.Near(1), **{name: "x"}))
 
@@ -206,12 +212,13 @@ def wrong_choices(text, known):
 
 def test_editors_show_every_choice():
     text, known = INSTALLED.read_text(), dict(choices())
-    assert len(known) == 6 and wrong_choices(text, known) == []
+    assert len(known) == 10 and wrong_choices(text, known) == []
 
 
 def test_a_choice_that_is_missing_is_noticed():
     text, known = INSTALLED.read_text(), dict(choices())
-    for name, key in [("rigid", ("Body.__new__", "kind")), ("cuda", ("Device.__new__", "backend")), ("manual", ("configure", "rebuild"))]:
+    for name, key in [("rigid", ("Body.__new__", "kind")), ("cuda", ("Device.__new__", "backend")), ("manual", ("configure", "rebuild")),
+                      ("corner", ("Detector.prepare", "grouped"))]:
         assert key in wrong_choices(text.replace(f'"{name}"', '"other"'), known)
 
 

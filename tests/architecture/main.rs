@@ -124,6 +124,7 @@ fn stages_never_import_each_other() {
     assert_eq!(
         stages(),
         [
+            "answer",
             "balance",
             "construct",
             "fit",

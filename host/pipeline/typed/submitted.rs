@@ -1,6 +1,7 @@
 //! The status of a submission on the device; faults are planted and must be noticed.
 
 use super::*;
+use crate::contacts::DeviceExtras;
 use crate::device::emulator::{Emulator, Mode};
 use crate::pipeline::Layout;
 use crate::pipeline::list::List;

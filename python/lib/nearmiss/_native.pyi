@@ -966,6 +966,27 @@ class DeviceAnswer:
         """
 
     @property
+    def geometry(self) -> dict[str, DeviceArray] | None:
+        """Geometry of rows, if `prepare` was called with `geometry=True`; else None.
+
+        A dictionary of columns, as of `Detector.geometry`: vertices (room, 4) int32 through all bodies,
+        signed_weights (room, 4), points (room, 2, 3), normals (room, 3), distances (room,) float64.
+        Rows are numbered through both lists. Unused rows are zeros, so they weigh nothing.
+        """
+    @property
+    def least_by_vertex(self) -> DeviceArray | None:
+        """(vertices,) float64: least time or distance of each vertex, infinite without a row.
+
+        None unless `prepare` was called with `least_by_vertex=True`.
+        """
+    @property
+    def grouped(self) -> dict[str, tuple[DeviceArray, DeviceArray]]:
+        """Rows by feature, for each name in `grouped` of `prepare`: (starts, rows), int32.
+
+        Rows of feature i are rows[starts[i]:starts[i + 1]], ascending; an unused place is -1. Rows are
+        numbered through both lists, features through all bodies.
+        """
+    @property
     def status(self) -> DeviceArray:
         """(5,) int64: counts of the submission, and whether its answer is whole.
 
@@ -1160,7 +1181,7 @@ class Detector:
         """
 
     def grouped(
-        self, answer: Answer, body: Key, by: str = "vertex"
+        self, answer: Answer, body: Key, by: Literal["vertex", "edge", "face", "corner"] = "vertex"
     ) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
         """Group the rows of an answer by features of a body.
 
@@ -1208,7 +1229,15 @@ class Detector:
         They are counted: the query runs.
         """
 
-    def prepare(self, inputs: Motions, queries: Iterable[Query[Any]]) -> None:
+    def prepare(
+        self,
+        inputs: Motions,
+        queries: Iterable[Query[Any]],
+        *,
+        geometry: bool = False,
+        least_by_vertex: bool = False,
+        grouped: Sequence[Literal["vertex", "edge", "face", "corner"]] | None = None,
+    ) -> None:
         """Prepare submissions: run the queries, load every kernel and take all memory.
 
         After it, `submit` allocates nothing and waits for nothing, until another call changes the
@@ -1218,6 +1247,8 @@ class Detector:
           arrays on a CPU. Write new positions into them. They are held while prepared.
         - `queries`: a list of queries, answered by every submission. No two may differ in numbers
           alone.
+        - `geometry`, `least_by_vertex`, `grouped`: parts of the answers that submissions also make on
+          the device. `on_device` has them. `grouped` has "vertex", "edge", "face" or "corner".
         """
 
     @property
@@ -1401,7 +1432,15 @@ class MultiDetector:
         As `update` and `query`. An error of the motions or of the query has moved nothing.
         """
 
-    def prepare(self, inputs: Motions, queries: Iterable[Query[Any]]) -> None:
+    def prepare(
+        self,
+        inputs: Motions,
+        queries: Iterable[Query[Any]],
+        *,
+        geometry: bool = False,
+        least_by_vertex: bool = False,
+        grouped: Sequence[Literal["vertex", "edge", "face", "corner"]] | None = None,
+    ) -> None:
         """Prepare submissions: see Detector.prepare.
 
         Arrays may be on any of the GPUs; every submission copies them to the others. The work is
@@ -1437,7 +1476,7 @@ class MultiDetector:
         """Return where the features or triangles of an answer's rows meet: see Detector.geometry."""
 
     def grouped(
-        self, answer: Answer, body: Key, by: str = "vertex"
+        self, answer: Answer, body: Key, by: Literal["vertex", "edge", "face", "corner"] = "vertex"
     ) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
         """Group the rows of an answer by features of a body: see Detector.grouped."""
 

@@ -1,11 +1,8 @@
-extern crate std;
-
 use super::forms::start;
 use super::*;
 use crate::math::Vec3;
 use crate::prim::cubic::Moving;
 use crate::prim::isolate::{Edges, Face};
-use std::vec::Vec;
 
 /// Numbers that look random: a multiplication and a shift (splitmix64).
 pub(super) struct Random(pub u64);
@@ -23,29 +20,24 @@ impl Random {
 }
 
 /// Every form of a pair.
-pub(super) fn forms(is_face: bool) -> Vec<Form> {
+pub(super) fn forms(is_face: bool) -> impl Iterator<Item = Form> {
     let corners = if is_face { 3 } else { 4 };
-    let mut all = Vec::new();
-    for k in 0..corners {
-        all.push(Form::CornerSquare { a: k });
-        for to in [start(k), end(k)] {
-            all.push(Form::Plane { to });
-            all.extend((0..corners).map(|a| Form::Corner { a, to }));
-        }
-        for axis in 0..3 {
-            all.push(Form::Motion { k, axis });
-        }
-    }
-    let pairs = if is_face { [[0, 1], [0, 2], [1, 2], [1, 2]] } else { [[0, 1], [0, 2], [1, 3], [2, 3]] };
-    for side in pairs {
-        all.extend([Form::SideHeight { side }, Form::SideSquare { side }, Form::SideRate { side }]);
-        all.extend(side.map(|at| Form::Along { side, at }));
-        all.extend((0..corners).flat_map(|k| [start(k), end(k)]).map(|to| Form::Side { side, to }));
-    }
-    all.extend([Form::PlaneHeight, Form::PlaneSquare, Form::PlaneRate]);
-    all.extend([1, 2].map(|k| Form::Weight { k }));
-    all.extend((0..3).map(|axis| Form::Normal { axis }));
-    all
+    let places = move || (0..corners).flat_map(|k| [start(k), end(k)]);
+    let sides = if is_face { [[0, 1], [0, 2], [1, 2], [1, 2]] } else { [[0, 1], [0, 2], [1, 3], [2, 3]] };
+    let of_corners = (0..corners).flat_map(move |a| {
+        let motions = (0..3).map(move |axis| Form::Motion { k: a, axis });
+        let heights = places().map(move |to| Form::Corner { a, to });
+        motions.chain(heights).chain([Form::CornerSquare { a }])
+    });
+    let of_sides = sides.into_iter().flat_map(move |side| {
+        let lengths = [Form::SideHeight { side }, Form::SideSquare { side }, Form::SideRate { side }];
+        let along = side.into_iter().map(move |at| Form::Along { side, at });
+        lengths.into_iter().chain(along).chain(places().map(move |to| Form::Side { side, to }))
+    });
+    let of_plane = [Form::PlaneHeight, Form::PlaneSquare, Form::PlaneRate, Form::Weight { k: 1 }];
+    let normals = (0..3).map(|axis| Form::Normal { axis });
+    let of_plane = of_plane.into_iter().chain([Form::Weight { k: 2 }]).chain(normals);
+    of_corners.chain(of_sides).chain(of_plane).chain(places().map(|to| Form::Plane { to }))
 }
 
 /// Signs by integers alone.
@@ -118,7 +110,7 @@ fn the_parts_have_the_course_of_the_whole() {
                 return;
             };
             let exact = Integers(Exact::new(&v, is_face));
-            for form in forms(is_face).into_iter().step_by(1 + i % 5) {
+            for form in forms(is_face).step_by(1 + i % 5) {
                 if let Some(sign) = motion.bounded(form).sign() {
                     assert_eq!(exact.0.sign(form), Some(sign), "{form:?} {v:?}");
                 }
