@@ -584,6 +584,22 @@ typedef struct {
     uint32_t pad;
 } NearmissExclusions;
 
+// Parts of answers that submissions also make on the device. Begin by `nearmiss_device_extras()`.
+//
+// Answers to continuous and near queries have all parts. Those of discrete queries have groups by
+// face and by corner. Others have none.
+typedef struct {
+    // 1: a `NearmissDeviceRowGeometry` for each row. Cost: 128 bytes a row that there is room for.
+    uint32_t geometry;
+    // 1: the least time or distance of each vertex. Cost: 8 bytes a vertex.
+    uint32_t least_by_vertex;
+    // Features by which rows are grouped: each a `NearmissGroupBy`. NULL for none. Cost of each: a
+    // sort, and 20 bytes for each feature of a row.
+    const uint32_t *grouped_by;
+    // How many there are.
+    size_t group_count;
+} NearmissDeviceExtras;
+
 // The motion of a body in a step, or its place at rest. Make it by `nearmiss_motion_positions`,
 // `_step`, `_pose`, `_pose_step` or `_turning`. Fields that `kind` does not read must be empty.
 typedef struct {
@@ -665,6 +681,28 @@ typedef struct {
     NearmissResearch research;
 } NearmissQuery;
 
+// A list in memory of the device.
+typedef struct {
+    // Address of the first entry.
+    uint64_t address;
+    // Room, in entries.
+    uint64_t room;
+} NearmissDeviceList;
+
+// Addresses of the parts of an answer, in memory of the device. A part that was not prepared has
+// address 0. Rows are numbered through both lists, features through all bodies.
+typedef struct {
+    // A `NearmissDeviceRowGeometry` for each row.
+    NearmissDeviceList geometry;
+    // A double for each vertex: its least time or distance, infinity without a row.
+    NearmissDeviceList least_by_vertex;
+    // For each `NearmissGroupBy`: a uint32_t for each feature, and the end. The rows of feature i
+    // are `rows[starts[i]]` to `rows[starts[i + 1] - 1]`, ascending.
+    NearmissDeviceList starts[4];
+    // For each `NearmissGroupBy`: numbers of rows, uint32_t. All bits of an unused one are set.
+    NearmissDeviceList rows[4];
+} NearmissExtrasOnDevice;
+
 // Vertices, weights, points and normal of a contact, or of a near pair. The four vertices are
 // those of feature a, then those of feature b. Vertex/face: the vertex, then the face's three
 // corners. Edge/edge: both ends of edge a, then both ends of edge b, the larger index first.
@@ -735,14 +773,6 @@ typedef struct {
     // Number of rows of the answer.
     size_t row_count;
 } NearmissCurves;
-
-// A list in memory of the device.
-typedef struct {
-    // Address of the first entry.
-    uint64_t address;
-    // Room, in entries.
-    uint64_t room;
-} NearmissDeviceList;
 
 // Addresses of the answer to a submitted query, in memory of the device. They hold until the
 // detector is no longer prepared.
@@ -892,6 +922,21 @@ typedef struct {
     // The nearest points.
     double points[2][3];
 } NearmissDeviceNearest;
+
+// Geometry of a row, in memory of the device. Unused rows are zeros, so they weigh nothing.
+typedef struct {
+    // Distance of the nearest points.
+    double distance;
+    // Unit vector from the second feature towards the first; zeros if no direction is defined.
+    double normal[3];
+    // Weight of each vertex in the nearest point of its feature, negative for the second feature.
+    double signed_weights[4];
+    // Nearest points of both features at the time of contact.
+    double points[2][3];
+    // The vertices, numbered through all bodies: a vertex and the face's corners, or the ends of
+    // two edges. With fewer, the last one is repeated.
+    uint32_t vertices[4];
+} NearmissDeviceRowGeometry;
 
 // Counts of a submitted query, in memory of the device.
 typedef struct {
@@ -1160,6 +1205,37 @@ NearmissCode nearmiss_detector_exclude_pairs(NearmissDetector *detector,
                                              const uint32_t *pairs,
                                              size_t count,
                                              NearmissError *error);
+
+// No parts.
+NearmissDeviceExtras nearmiss_device_extras(void);
+
+// As `nearmiss_detector_prepare`, with parts of the answers that submissions also make on the
+// device: geometry of rows, rows by feature, the least time or distance of each vertex.
+// `nearmiss_detector_extras_on_device` returns their addresses.
+//
+// Fails as there; with `NEARMISS_INVALID_ARGUMENT` if no query can have a part, and for geometry of
+// a step in which a rigid body may turn.
+//
+// # Safety
+// As of `nearmiss_detector_prepare`. So many numbers are in `grouped_by`.
+NearmissCode nearmiss_detector_prepare_with(NearmissDetector *detector,
+                                            const NearmissMotion *motions,
+                                            size_t motion_count,
+                                            const NearmissQuery *queries,
+                                            size_t query_count,
+                                            const NearmissDeviceExtras *extras,
+                                            NearmissError *error);
+
+// Addresses of the parts of the answer to a prepared query, for kernels of the caller on the same
+// stream. Call it after each `nearmiss_detector_prepare_with`. Fails as
+// `nearmiss_detector_on_device`.
+//
+// # Safety
+// The names of the query are texts or NULL.
+NearmissCode nearmiss_detector_extras_on_device(NearmissDetector *detector,
+                                                const NearmissQuery *query,
+                                                NearmissExtrasOnDevice *extras,
+                                                NearmissError *error);
 
 // Moves bodies for the next queries. Positions are uploaded once, for any number of queries. A
 // body that is not named rests where it was, or where its step ended.

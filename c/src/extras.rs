@@ -13,8 +13,8 @@ use std::mem::{MaybeUninit, offset_of};
 
 /// Parts of answers that submissions also make on the device. Begin by `nearmiss_device_extras()`.
 ///
-/// Answers to continuous and near queries have all parts, those of discrete queries groups by face and
-/// by corner. Others have none.
+/// Answers to continuous and near queries have all parts. Those of discrete queries have groups by
+/// face and by corner. Others have none.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct NearmissDeviceExtras {
@@ -40,8 +40,8 @@ pub struct NearmissDeviceRowGeometry {
     pub signed_weights: [f64; 4],
     /// Nearest points of both features at the time of contact.
     pub points: [[f64; 3]; 2],
-    /// The vertices, numbered through all bodies: a vertex and the face's corners, or the ends of two
-    /// edges. With fewer, the last one is repeated.
+    /// The vertices, numbered through all bodies: a vertex and the face's corners, or the ends of
+    /// two edges. With fewer, the last one is repeated.
     pub vertices: [u32; 4],
 }
 
@@ -54,8 +54,8 @@ pub struct NearmissExtrasOnDevice {
     pub geometry: NearmissDeviceList,
     /// A double for each vertex: its least time or distance, infinity without a row.
     pub least_by_vertex: NearmissDeviceList,
-    /// For each `NearmissGroupBy`: a uint32_t for each feature, and the end. The rows of feature i are
-    /// `rows[starts[i]]` to `rows[starts[i + 1] - 1]`, ascending.
+    /// For each `NearmissGroupBy`: a uint32_t for each feature, and the end. The rows of feature i
+    /// are `rows[starts[i]]` to `rows[starts[i + 1] - 1]`, ascending.
     pub starts: [NearmissDeviceList; 4],
     /// For each `NearmissGroupBy`: numbers of rows, uint32_t. All bits of an unused one are set.
     pub rows: [NearmissDeviceList; 4],
@@ -76,8 +76,8 @@ pub extern "C" fn nearmiss_device_extras() -> NearmissDeviceExtras {
     NearmissDeviceExtras { geometry: 0, least_by_vertex: 0, grouped_by: std::ptr::null(), group_count: 0 }
 }
 
-/// As `nearmiss_detector_prepare`, with parts of the answers that submissions also make on the device:
-/// geometry of rows, rows by feature, the least time or distance of each vertex.
+/// As `nearmiss_detector_prepare`, with parts of the answers that submissions also make on the
+/// device: geometry of rows, rows by feature, the least time or distance of each vertex.
 /// `nearmiss_detector_extras_on_device` returns their addresses.
 ///
 /// Fails as there; with `NEARMISS_INVALID_ARGUMENT` if no query can have a part, and for geometry of
@@ -114,7 +114,8 @@ pub unsafe extern "C" fn nearmiss_detector_prepare_with(
 }
 
 /// Addresses of the parts of the answer to a prepared query, for kernels of the caller on the same
-/// stream. Call it after each `nearmiss_detector_prepare_with`. Fails as `nearmiss_detector_on_device`.
+/// stream. Call it after each `nearmiss_detector_prepare_with`. Fails as
+/// `nearmiss_detector_on_device`.
 ///
 /// # Safety
 /// The names of the query are texts or NULL.
