@@ -5,7 +5,9 @@
 //!          then the next.
 //!          A finished lane draws the next pair of its block, so few lanes idle.
 //!          A block's pairs are a grid apart. The kinds begin at opposite ends of the grid.
-//!          Pairs of vertices with different radii have a kernel of their own, [`thick`].
+//!          Pairs of vertices with a thickness have a kernel of their own, [`thick`]. Its lanes
+//!          draw all pairs twice: first they take those of one radius a feature, then the others.
+//!          Steps of the latter are taken part by part.
 //! Reads    pairs, those of `abreast` with a time; faces or edges, positions of both frames (four
 //!          vertices); tolerances of bodies, if they differ; radii, with a thickness.
 //! Writes   contacts and undecided pairs with bounds of toi; or the earliest.
@@ -20,7 +22,7 @@
 use super::climb::emit;
 use super::{edge_edge, of_edge_edge, of_vertex_face, radii_of_edges, radii_of_face, vertex_face};
 use crate::abi::{Listed, Pair, RungArgs, ThickRungArgs};
-use crate::exec::{Block, Lane};
+use crate::exec::{Block, Lane, Shared};
 use crate::math::Real;
 use crate::prim::inclusion::{Params, Verdict};
 use crate::prim::isolate::normal::{NUMBERS, Normal};
@@ -56,6 +58,13 @@ pub trait UnderWay<R: Real, L: Lane>: Copy {
     type Args;
     /// Those of every rung.
     fn rung(args: &Self::Args) -> &RungArgs<R>;
+    /// Whether pairs of another form are left to others.
+    const CHOOSES: bool = false;
+    /// Whether a pair is of this form.
+    #[inline(always)]
+    fn takes(_lane: &L, _args: &Self::Args, _pair: Pair, _is_face: bool) -> bool {
+        true
+    }
     /// A vertex and a face, from a time before which they are certainly farther apart. Its normal is
     /// kept by `put`.
     fn of_face(lane: &L, args: &Self::Args, from: (Pair, f64), put: impl FnOnce(Normal<f64>)) -> Self;
@@ -109,18 +118,20 @@ impl<R: Real, L: Lane> UnderWay<R, L> for Double {
     }
 }
 
-/// A pair of vertices with a thickness: of one radius a feature, or of several.
+/// A pair of vertices with a thickness, all of one radius a feature.
 #[derive(Clone, Copy)]
-enum Thick {
-    Even(Double),
-    Uneven(Uneven),
-}
+struct Even(Double);
 
-impl<R: Real, L: Lane> UnderWay<R, L> for Thick {
+impl<R: Real, L: Lane> UnderWay<R, L> for Even {
     type Args = ThickRungArgs<R>;
+    const CHOOSES: bool = true;
     #[inline(always)]
     fn rung(args: &ThickRungArgs<R>) -> &RungArgs<R> {
         &args.rung
+    }
+    #[inline(always)]
+    fn takes(lane: &L, args: &ThickRungArgs<R>, pair: Pair, is_face: bool) -> bool {
+        is_even(radii_of(lane, args, pair, is_face))
     }
     #[inline(always)]
     fn of_face(
@@ -129,12 +140,9 @@ impl<R: Real, L: Lane> UnderWay<R, L> for Thick {
         (pair, from): (Pair, f64),
         put: impl FnOnce(Normal<f64>),
     ) -> Self {
-        let radii = radii_of_face(lane, args.radii, args.rung.faces, pair);
-        let p = of_radii(of_vertex_face(lane, &args.rung, pair), &args.rung.params, radii);
-        let (v, f) = vertex_face(lane, &args.rung.frames, args.rung.faces, pair);
-        let face = Face::new(v, f, &p);
+        let (face, _, p) = face_of(lane, args, pair);
         put(face.normal());
-        Thick::begin(face.of_four(), radii, from, &p)
+        Even(Double::begin(face.of_four(), from, &p))
     }
     #[inline(always)]
     fn of_edges(
@@ -143,27 +151,92 @@ impl<R: Real, L: Lane> UnderWay<R, L> for Thick {
         (pair, from): (Pair, f64),
         put: impl FnOnce(Normal<f64>),
     ) -> Self {
-        let radii = radii_of_edges(lane, args.radii, args.rung.edges, pair);
-        let p = of_radii(of_edge_edge(lane, &args.rung, pair), &args.rung.params, radii);
-        let [x, y] = edge_edge(lane, &args.rung.frames, args.rung.edges, pair);
-        let edges = Edges::new(x, y, &p);
+        let (edges, _, p) = edges_of(lane, args, pair);
         put(edges.normal());
-        Thick::begin(edges, radii, from, &p)
+        Even(Double::begin(edges, from, &p))
     }
     #[inline(always)]
     fn is_face(&self) -> bool {
-        match self {
-            Thick::Even(double) => double.is_face(),
-            Thick::Uneven(uneven) => uneven.is_face(),
-        }
+        self.0.is_face()
     }
     #[inline(always)]
     fn step(&mut self, p: &Params, normal: impl Fn() -> Normal<f64>) -> Option<Verdict> {
-        match self {
-            Thick::Even(double) => double.step(p, normal),
-            Thick::Uneven(uneven) => uneven.step(p),
-        }
+        self.0.step(p, normal)
     }
+}
+
+/// A pair of vertices with a thickness, of several radii. It has no use for its normal.
+impl<R: Real, L: Lane> UnderWay<R, L> for Uneven {
+    type Args = ThickRungArgs<R>;
+    const CHOOSES: bool = true;
+    #[inline(always)]
+    fn rung(args: &ThickRungArgs<R>) -> &RungArgs<R> {
+        &args.rung
+    }
+    #[inline(always)]
+    fn takes(lane: &L, args: &ThickRungArgs<R>, pair: Pair, is_face: bool) -> bool {
+        !is_even(radii_of(lane, args, pair, is_face))
+    }
+    #[inline(always)]
+    fn of_face(
+        lane: &L,
+        args: &ThickRungArgs<R>,
+        (pair, from): (Pair, f64),
+        _put: impl FnOnce(Normal<f64>),
+    ) -> Self {
+        let (face, radii, p) = face_of(lane, args, pair);
+        Uneven::begin(&face.of_four(), radii, from, &p)
+    }
+    #[inline(always)]
+    fn of_edges(
+        lane: &L,
+        args: &ThickRungArgs<R>,
+        (pair, from): (Pair, f64),
+        _put: impl FnOnce(Normal<f64>),
+    ) -> Self {
+        let (edges, radii, p) = edges_of(lane, args, pair);
+        Uneven::begin(&edges, radii, from, &p)
+    }
+    #[inline(always)]
+    fn is_face(&self) -> bool {
+        Uneven::is_face(self)
+    }
+    #[inline(always)]
+    fn step(&mut self, p: &Params, _normal: impl Fn() -> Normal<f64>) -> Option<Verdict> {
+        Uneven::step(self, p)
+    }
+}
+
+/// Radii of the control vectors of a pair.
+#[inline(always)]
+fn radii_of<R: Real, L: Lane>(lane: &L, args: &ThickRungArgs<R>, pair: Pair, is_face: bool) -> [f64; 4] {
+    if is_face {
+        radii_of_face(lane, args.radii, args.rung.faces, pair)
+    } else {
+        radii_of_edges(lane, args.radii, args.rung.edges, pair)
+    }
+}
+
+/// A vertex and a face, with radii and parameters.
+#[inline(always)]
+fn face_of<R: Real, L: Lane>(lane: &L, args: &ThickRungArgs<R>, pair: Pair) -> (Face<f64>, [f64; 4], Params) {
+    let radii = radii_of(lane, args, pair, true);
+    let p = of_radii(of_vertex_face(lane, &args.rung, pair), &args.rung.params, radii);
+    let (v, f) = vertex_face(lane, &args.rung.frames, args.rung.faces, pair);
+    (Face::new(v, f, &p), radii, p)
+}
+
+/// Two edges, with radii and parameters.
+#[inline(always)]
+fn edges_of<R: Real, L: Lane>(
+    lane: &L,
+    args: &ThickRungArgs<R>,
+    pair: Pair,
+) -> (Edges<f64>, [f64; 4], Params) {
+    let radii = radii_of(lane, args, pair, false);
+    let p = of_radii(of_edge_edge(lane, &args.rung, pair), &args.rung.params, radii);
+    let [x, y] = edge_edge(lane, &args.rung.frames, args.rung.edges, pair);
+    (Edges::new(x, y, &p), radii, p)
 }
 
 /// Parameters of a pair whose separation is that of the query, and the radius if there is one.
@@ -173,38 +246,46 @@ fn of_radii(of_bodies: Params, query: &Params, radii: [f64; 4]) -> Params {
     Params { min_separation: query.min_separation + radius, ..of_bodies }
 }
 
-impl Thick {
-    #[inline(always)]
-    fn begin(pair: Edges<f64>, radii: [f64; 4], from: f64, p: &Params) -> Self {
-        if is_even(radii) {
-            Thick::Even(Double::begin(pair, from, p))
-        } else {
-            Thick::Uneven(Uneven::begin(&pair, radii, from, p))
-        }
-    }
-}
-
 /// All pairs of both lists.
 #[inline(always)]
 pub fn separate<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
-    each::<R, B, Double>(block, args);
+    each::<R, B, Double>(block, args, None);
 }
 
-/// All pairs of both lists, of vertices with a thickness.
+/// All pairs of both lists, of vertices with a thickness. First those of one radius a feature, then
+/// those of several: a lane with a pair of either form at a time would keep it in local memory.
 #[inline(always)]
 pub fn thick<R: Real, B: Block>(block: &mut B, args: &ThickRungArgs<R>) {
-    each::<R, B, Thick>(block, args);
+    let shares = each::<R, B, Even>(block, args, None);
+    each::<R, B, Uneven>(block, args, Some(shares));
 }
 
+/// Shared memory of a block.
+#[derive(Clone, Copy)]
+struct Shares {
+    /// A normal a lane.
+    normals: Shared<u64>,
+    /// The numbers of pairs drawn, of either kind.
+    drawn: Shared<u32>,
+}
+
+/// All pairs of a form. Returns the shared memory, which is taken unless given.
 #[inline(always)]
-fn each<R: Real, B: Block, U: UnderWay<R, B::Lane>>(block: &mut B, of_kernel: &U::Args) {
+fn each<R: Real, B: Block, U: UnderWay<R, B::Lane>>(
+    block: &mut B,
+    of_kernel: &U::Args,
+    shares: Option<Shares>,
+) -> Shares {
     let args = U::rung(of_kernel);
     let (first, blocks) = (block.block(), block.blocks());
     // Whether f32 has left the pairs.
     let is_begun = !args.vf.begun.count().is_empty();
     let (count_vf, count_ee) = (listed(block, &args.vf, is_begun), listed(block, &args.ee, is_begun));
     let lanes = block.lanes();
-    let (normals, drawn) = (block.shared::<u64>(NUMBERS as u32 * lanes), block.shared::<u32>(2));
+    let Shares { normals, drawn } = shares.unwrap_or_else(|| Shares {
+        normals: block.shared::<u64>(NUMBERS as u32 * lanes),
+        drawn: block.shared::<u32>(2),
+    });
     block.phase(|lane| {
         if lane.lane() == 0 {
             lane.put(drawn, 0, 0);
@@ -230,7 +311,7 @@ fn each<R: Real, B: Block, U: UnderWay<R, B::Lane>>(block: &mut B, of_kernel: &U
         // A quarter of the lanes begins with vertices and faces, so that few warps have both kinds.
         let (mut is_face, mut kinds) = (lane.lane() < lanes / 4, 2);
         while lane.any(kinds > 0 || under_way.is_some()) {
-            if kinds > 0 && under_way.is_none() {
+            while kinds > 0 && under_way.is_none() {
                 let i = blocks as u64 * lane.shared_add(drawn, is_face as u32, 1) as u64;
                 let (i, count) = if is_face {
                     (i + first as u64, count_vf)
@@ -241,10 +322,17 @@ fn each<R: Real, B: Block, U: UnderWay<R, B::Lane>>(block: &mut B, of_kernel: &U
                     (is_face, kinds) = (!is_face, kinds - 1);
                 } else if is_face {
                     let begun = nth(lane, &args.vf, is_begun, i as u32);
-                    under_way = Some((begun.0, U::of_face(lane, of_kernel, begun, put)));
+                    if U::takes(lane, of_kernel, begun.0, true) {
+                        under_way = Some((begun.0, U::of_face(lane, of_kernel, begun, put)));
+                    }
                 } else {
                     let begun = nth(lane, &args.ee, is_begun, i as u32);
-                    under_way = Some((begun.0, U::of_edges(lane, of_kernel, begun, put)));
+                    if U::takes(lane, of_kernel, begun.0, false) {
+                        under_way = Some((begun.0, U::of_edges(lane, of_kernel, begun, put)));
+                    }
+                }
+                if !U::CHOOSES {
+                    break;
                 }
             }
             // Lanes that drew and lanes that did not step side by side.
@@ -262,4 +350,5 @@ fn each<R: Real, B: Block, U: UnderWay<R, B::Lane>>(block: &mut B, of_kernel: &U
         }
         lane.meet();
     });
+    Shares { normals, drawn }
 }
