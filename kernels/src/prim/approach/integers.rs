@@ -91,10 +91,11 @@ impl Small {
         let mut x = Small::NONE;
         for k in 0..4 {
             let [first, second] = ends_of(k as u32, is_face);
-            for end in 0..2 {
+            let between = |end: usize| {
                 let (a, b) = (vertices[first][end], vertices[second][end]);
-                x.0[k][end] = [0, 1, 2].map(|i| whole(a[i], grid).wrapping_sub(whole(b[i], grid)));
-            }
+                [0, 1, 2].map(|i| whole(a[i], grid).wrapping_sub(whole(b[i], grid)))
+            };
+            x.0[k] = [between(0), between(1)];
         }
         x
     }

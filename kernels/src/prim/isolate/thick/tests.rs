@@ -264,15 +264,15 @@ fn hostile_pair(numbers: &mut Numbers, i: u32, p: &Params) -> (Pair<f64, 4>, [f6
         Moving { t0, t1 }
     };
     let (mut a, b, mut c, d) = (vertex(true), vertex(true), vertex(false), vertex(false));
-    if i % 7 == 0 {
+    if i.is_multiple_of(7) {
         a = c;
     }
-    if i % 11 == 0 {
+    if i.is_multiple_of(11) {
         c = d;
     }
     let size = [0.01, 0.3, 1e-9, 1.0][(i / 5 % 4) as usize];
     let radii = [0; 4].map(|_| size * (1.001 + numbers.next()));
-    if i % 2 == 0 {
+    if i.is_multiple_of(2) {
         let [x, y, z, _] = radii;
         (Face::new(a, [b, c, d], p).of_four(), [x, y, z, z])
     } else {
