@@ -19,25 +19,27 @@
 //! Between both is a gap: points next to the nearest ones, with larger radii, come within theirs
 //! sooner. With a slope `k` of the radius along a feature that is `k^2 / 2` of the distance. A pair
 //! that stays in it is not decided.
-//!
-//! A step is in parts, see `parts`.
 
-mod parts;
-#[cfg(test)]
-mod tests;
-
+use super::advance::Advanced;
 use super::hull::Hull;
+use super::ladder::advanced;
 use super::pair::{Pair, sum};
 use super::separation::ADVANCES;
 use crate::math::tolerance::{DISTANCE_ERROR, Tolerance};
 use crate::math::{Real, Vec3};
-use crate::prim::inclusion::{Grid, Params};
+use crate::prim::inclusion::{Grid, Params, Verdict};
 use crate::prim::near::{Radii, Range, shortest};
 
 /// Control vectors err by `4u` of the reach, their differences by `9u`: nine times as much as those of
 /// positions, from which the bounds of distances are derived; and they are up to twice as long. Ratio,
 /// rounded up.
 const RESTS: f64 = 32.0;
+/// Steps of a near pair before times ahead are tested.
+const PATIENCE: u32 = 16;
+/// Attempts of a direction that turns in a step.
+const TURNS: u32 = 3;
+/// How often the time that is tested ahead doubles: from a tolerance up to the end of the step.
+const AHEAD: u32 = 40;
 
 /// Whether all control vectors have one radius.
 #[inline(always)]
@@ -77,18 +79,11 @@ pub struct Uneven {
     slack: f64,
     time_tolerance: f64,
     at: f64,
-    /// For how long a direction that turns is tried next; or how far ahead the next time is tested.
+    /// For how long a direction that turns is tried next.
     stride: f64,
     end: f64,
     steps: u32,
     most: u32,
-    /// The part of a step that is next, see `parts`.
-    part: u32,
-    /// The direction at the begin of the step, and the time until which it proves the pair farther.
-    along: Vec3<f64>,
-    next: f64,
-    /// Whether the pair is near at the begin of the step.
-    is_near: bool,
 }
 
 impl Uneven {
@@ -111,10 +106,6 @@ impl Uneven {
             steps: 0,
             // Nothing is known of what is not finite.
             most: if pair.finite { p.max_iterations.max(ADVANCES) } else { 0 },
-            part: parts::STEP,
-            along: Vec3([0.0; 3]),
-            next: from,
-            is_near: false,
         }
     }
 
@@ -122,6 +113,57 @@ impl Uneven {
     #[inline(always)]
     pub fn is_face(&self) -> bool {
         self.hull.is_face
+    }
+
+    /// A step; once it was the last, the verdict.
+    #[inline(always)]
+    pub fn step(&mut self, p: &Params) -> Option<Verdict> {
+        let told = self.advance()?;
+        Some(advanced(told, self.steps >= self.most, p))
+    }
+
+    /// A step; the result, once it is final.
+    #[inline(always)]
+    fn advance(&mut self) -> Option<Advanced<f64>> {
+        let (t, end, short) = (self.at, self.end, self.time_tolerance);
+        if self.steps >= self.most {
+            return Some(Advanced::Open { from: t });
+        }
+        self.steps += 1;
+        let x = self.vectors(t);
+        let (n, height) = self.direction(&x);
+        let is_near = height <= self.separation + self.slack;
+        if is_near && self.is_within(t) {
+            return Some(Advanced::Within { from: t, to: t });
+        }
+        let next = self.until(&x, n).map_or(t, |next| next.max(t));
+        if next >= end {
+            return Some(Advanced::Apart);
+        }
+        if is_near || next - t < 0.25 * short {
+            let to = (next + short).min(end);
+            if self.is_within(to) {
+                return Some(Advanced::Within { from: next, to });
+            }
+            if next - t < 0.02 * short || self.steps > PATIENCE {
+                return Some(self.look_ahead(next));
+            }
+        }
+        for _ in 0..TURNS {
+            let to = (t + self.stride).min(end);
+            if !(to > next) {
+                break;
+            }
+            let y = self.vectors(to);
+            let (m, _) = self.direction(&y);
+            if self.stays_farther((&x, n), (&y, m)) {
+                (self.at, self.stride) = (to, (to - t) * 4.0);
+                return if to >= end { Some(Advanced::Apart) } else { None };
+            }
+            self.stride = (to - t) * 0.25;
+        }
+        (self.at, self.stride) = (next, self.stride.max((next - t) * 4.0));
+        None
     }
 
     /// Whether all control vectors stay farther than the separation and their radii along a direction
@@ -150,6 +192,23 @@ impl Uneven {
         let error = sum(n) * (f64::ADVANCE_POINT * self.hull.reach + f64::ISOLATE_UNDERFLOW);
         let over = (self.separation + self.radii[k]) * f64::INCLUSION_UP + f64::ISOLATE_UNDERFLOW;
         (over * length + error) * f64::INCLUSION_UP
+    }
+
+    /// Whether a later time is certain; nothing is before `from`.
+    #[inline(always)]
+    fn look_ahead(&self, from: f64) -> Advanced<f64> {
+        let mut ahead = self.time_tolerance;
+        for _ in 0..AHEAD {
+            ahead += ahead;
+            let to = (from + ahead).min(self.end);
+            if self.is_within(to) {
+                return Advanced::Within { from, to };
+            }
+            if to >= self.end {
+                break;
+            }
+        }
+        Advanced::Near { from }
     }
 
     #[inline(always)]
@@ -188,30 +247,20 @@ impl Uneven {
                 best = (n * over, height);
             }
         };
-        let is_face = self.hull.is_face;
-        take(x[0]);
-        take(x[1]);
-        take(x[2]);
-        // The last corner of a face is there twice, and so is a side: no higher than before.
-        if !is_face {
-            take(x[3]);
+        for corner in x {
+            take(*corner);
         }
-        // Places are constants: vectors and radii stay in registers.
-        let at = |of_face: usize, of_edges: usize| {
-            if is_face { (x[of_face], self.radii[of_face]) } else { (x[of_edges], self.radii[of_edges]) }
+        let sides = if self.hull.is_face {
+            [(0, 1), (1, 2), (2, 0), (2, 0)]
+        } else {
+            [(0, 1), (0, 2), (1, 3), (2, 3)]
         };
-        let mut along = |(from, radius): (Vec3<f64>, f64), (to, last): (Vec3<f64>, f64)| {
-            let (e, rise) = (to - from, last - radius);
+        for (i, j) in sides {
+            let (e, rise) = (x[j] - x[i], self.radii[j] - self.radii[i]);
             let ee = e.dot(e);
-            let foot = from - e * (from.dot(e) / ee);
+            let foot = x[i] - e * (x[i].dot(e) / ee);
             let upright = Real::sqrt((1.0 - rise * rise / ee) / foot.dot(foot));
             take(e * (rise / ee) + foot * upright);
-        };
-        along(at(0, 0), at(1, 1));
-        along(at(1, 0), at(2, 2));
-        along(at(2, 1), at(0, 3));
-        if !is_face {
-            along(at(2, 2), at(3, 3));
         }
         let (e, f) = (x[1] - x[0], x[2] - x[0]);
         let (rise_e, rise_f) = (self.radii[1] - self.radii[0], self.radii[2] - self.radii[0]);
@@ -239,5 +288,108 @@ impl Uneven {
             next = if reaches { next.min(root) } else { next };
         }
         if is_farther { Some(next) } else { None }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::separation::{NO_TIME, Single, proven, verdict};
+    use super::super::{Edges, Face};
+    use super::*;
+    use crate::prim::cubic::Moving;
+
+    /// Numbers in [-1, 1), by xorshift.
+    struct Numbers(u64);
+
+    impl Numbers {
+        fn next(&mut self) -> f64 {
+            self.0 ^= self.0 << 13;
+            self.0 ^= self.0 >> 7;
+            self.0 ^= self.0 << 17;
+            (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        }
+        fn point(&mut self) -> Vec3<f64> {
+            Vec3([self.next(), self.next(), self.next()])
+        }
+    }
+
+    /// A pair, in both precisions, whose features pass each other, and the radii of its vertices.
+    fn pair(numbers: &mut Numbers, is_face: bool, p: &Params) -> (Pair<f32, 4>, Pair<f64, 4>, [f64; 4]) {
+        let way = numbers.point() * 2.0;
+        let mut vertex = |by: f64| {
+            let t0 = numbers.point();
+            Moving { t0, t1: t0 + way * by + numbers.point() * 0.25 }
+        };
+        let [a, b, c, d] = [vertex(1.0), vertex(if is_face { 0.0 } else { 1.0 }), vertex(0.0), vertex(0.0)];
+        let [ra, rb, rc, rd] = core::array::from_fn(|_| 0.1 + 0.09 * numbers.next());
+        if is_face {
+            let (single, double) =
+                (Face::new(a, [b, c, d], p).of_four(), Face::new(a, [b, c, d], p).of_four());
+            (single, double, [ra + rb, ra + rc, ra + rd, ra + rd])
+        } else {
+            let (single, double) = (Edges::new([a, b], [c, d], p), Edges::new([a, b], [c, d], p));
+            (single, double, [ra + rc, ra + rd, rb + rc, rb + rd])
+        }
+    }
+
+    /// The time that f32 proves with the largest radius; `None` of a pair that it parts.
+    fn begun(pair: &Pair<f32, 4>, radii: [f64; 4], p: &Params) -> Option<f64> {
+        let largest = radii.into_iter().fold(0.0, f64::max);
+        let p = Params { min_separation: p.min_separation + largest, ..*p };
+        let mut single = Single::begin(pair, &p);
+        loop {
+            let told = match single.fixed(&p) {
+                Ok(told) => Some(told),
+                Err(ahead) => single.ahead(ahead, &p, || pair.normal()),
+            };
+            if let Some(told) = told {
+                return if verdict(told, NO_TIME, &p).is_some() { None } else { Some(proven(told)) };
+            }
+        }
+    }
+
+    /// All of a rung in f64, from a time.
+    fn decided(pair: &Pair<f64, 4>, radii: [f64; 4], from: f64, p: &Params) -> Verdict {
+        let mut under_way = Uneven::begin(pair, radii, from, p);
+        loop {
+            if let Some(verdict) = under_way.step(p) {
+                return verdict;
+            }
+        }
+    }
+
+    #[test]
+    fn what_the_largest_radius_parts_or_proves_is_never_within() {
+        let (mut numbers, mut seen) = (Numbers(0x2545_f491_4f6c_dd1d), [0; 4]);
+        let p = Params { min_separation: 0.01, ..Params::new(1e-4) };
+        for i in 0..3000 {
+            let (single, double, radii) = pair(&mut numbers, i % 2 == 0, &p);
+            let from = begun(&single, radii, &p);
+            let all = decided(&double, radii, 0.0, &p);
+            let whole = Uneven::begin(&double, radii, 0.0, &p);
+            let until = from.unwrap_or(2.0);
+            for t in (0..=64).map(|k| f64::from(k) / 64.0).filter(|&t| t < until) {
+                assert!(!whole.is_within(t), "{i}: within at {t}, before {until}");
+            }
+            let Some(from) = from else {
+                seen[0] += 1;
+                assert!(!all.is_contact(), "{i}: {all:?}");
+                continue;
+            };
+            let rest = decided(&double, radii, from, &p);
+            seen[1] += u32::from(from > 0.0);
+            seen[2] += u32::from(rest.is_contact());
+            seen[3] += u32::from(rest.is_separated());
+            assert!(rest.is_separated() || rest.toi >= from, "{i}: {rest:?} from {from}");
+            assert!(!(rest.is_contact() && all.is_separated()), "{i}: {rest:?} {all:?}");
+            assert!(!(rest.is_separated() && all.is_contact()), "{i}: {rest:?} {all:?}");
+            // No contact is later than the other one certainly is.
+            let apart = rest.is_contact() && all.is_contact();
+            assert!(
+                !apart || (rest.toi <= all.toi_upper && all.toi <= rest.toi_upper),
+                "{i}: {rest:?} {all:?}"
+            );
+        }
+        assert!(seen.iter().all(|&count| count > 50), "{seen:?}");
     }
 }

@@ -5,9 +5,7 @@
 //!          then the next.
 //!          A finished lane draws the next pair of its block, so few lanes idle.
 //!          A block's pairs are a grid apart. The kinds begin at opposite ends of the grid.
-//!          Pairs of vertices with a thickness have a kernel of their own, [`thick`]. Its lanes
-//!          draw all pairs twice: first they take those of one radius a feature, then the others.
-//!          Steps of the latter are taken part by part.
+//!          Pairs of vertices with different radii have a kernel of their own, [`thick`].
 //! Reads    pairs, those of `abreast` with a time; faces or edges, positions of both frames (four
 //!          vertices); tolerances of bodies, if they differ; radii, with a thickness.
 //! Writes   contacts and undecided pairs with bounds of toi; or the earliest.
@@ -22,7 +20,7 @@
 use super::climb::emit;
 use super::{edge_edge, of_edge_edge, of_vertex_face, radii_of_edges, radii_of_face, vertex_face};
 use crate::abi::{Listed, Pair, RungArgs, ThickRungArgs};
-use crate::exec::{Block, Lane, Shared};
+use crate::exec::{Block, Lane};
 use crate::math::Real;
 use crate::prim::inclusion::{Params, Verdict};
 use crate::prim::isolate::normal::{NUMBERS, Normal};
@@ -58,13 +56,6 @@ pub trait UnderWay<R: Real, L: Lane>: Copy {
     type Args;
     /// Those of every rung.
     fn rung(args: &Self::Args) -> &RungArgs<R>;
-    /// Whether pairs of another form are left to others.
-    const CHOOSES: bool = false;
-    /// Whether a pair is of this form.
-    #[inline(always)]
-    fn takes(_lane: &L, _args: &Self::Args, _pair: Pair, _is_face: bool) -> bool {
-        true
-    }
     /// A vertex and a face, from a time before which they are certainly farther apart. Its normal is
     /// kept by `put`.
     fn of_face(lane: &L, args: &Self::Args, from: (Pair, f64), put: impl FnOnce(Normal<f64>)) -> Self;
@@ -118,20 +109,18 @@ impl<R: Real, L: Lane> UnderWay<R, L> for Double {
     }
 }
 
-/// A pair of vertices with a thickness, all of one radius a feature.
+/// A pair of vertices with a thickness: of one radius a feature, or of several.
 #[derive(Clone, Copy)]
-struct Even(Double);
+enum Thick {
+    Even(Double),
+    Uneven(Uneven),
+}
 
-impl<R: Real, L: Lane> UnderWay<R, L> for Even {
+impl<R: Real, L: Lane> UnderWay<R, L> for Thick {
     type Args = ThickRungArgs<R>;
-    const CHOOSES: bool = true;
     #[inline(always)]
     fn rung(args: &ThickRungArgs<R>) -> &RungArgs<R> {
         &args.rung
-    }
-    #[inline(always)]
-    fn takes(lane: &L, args: &ThickRungArgs<R>, pair: Pair, is_face: bool) -> bool {
-        is_even(radii_of(lane, args, pair, is_face))
     }
     #[inline(always)]
     fn of_face(
@@ -140,9 +129,12 @@ impl<R: Real, L: Lane> UnderWay<R, L> for Even {
         (pair, from): (Pair, f64),
         put: impl FnOnce(Normal<f64>),
     ) -> Self {
-        let (face, _, p) = face_of(lane, args, pair);
+        let radii = radii_of_face(lane, args.radii, args.rung.faces, pair);
+        let p = of_radii(of_vertex_face(lane, &args.rung, pair), &args.rung.params, radii);
+        let (v, f) = vertex_face(lane, &args.rung.frames, args.rung.faces, pair);
+        let face = Face::new(v, f, &p);
         put(face.normal());
-        Even(Double::begin(face.of_four(), from, &p))
+        Thick::begin(face.of_four(), radii, from, &p)
     }
     #[inline(always)]
     fn of_edges(
@@ -151,92 +143,27 @@ impl<R: Real, L: Lane> UnderWay<R, L> for Even {
         (pair, from): (Pair, f64),
         put: impl FnOnce(Normal<f64>),
     ) -> Self {
-        let (edges, _, p) = edges_of(lane, args, pair);
+        let radii = radii_of_edges(lane, args.radii, args.rung.edges, pair);
+        let p = of_radii(of_edge_edge(lane, &args.rung, pair), &args.rung.params, radii);
+        let [x, y] = edge_edge(lane, &args.rung.frames, args.rung.edges, pair);
+        let edges = Edges::new(x, y, &p);
         put(edges.normal());
-        Even(Double::begin(edges, from, &p))
+        Thick::begin(edges, radii, from, &p)
     }
     #[inline(always)]
     fn is_face(&self) -> bool {
-        self.0.is_face()
+        match self {
+            Thick::Even(double) => double.is_face(),
+            Thick::Uneven(uneven) => uneven.is_face(),
+        }
     }
     #[inline(always)]
     fn step(&mut self, p: &Params, normal: impl Fn() -> Normal<f64>) -> Option<Verdict> {
-        self.0.step(p, normal)
+        match self {
+            Thick::Even(double) => double.step(p, normal),
+            Thick::Uneven(uneven) => uneven.step(p),
+        }
     }
-}
-
-/// A pair of vertices with a thickness, of several radii. It has no use for its normal.
-impl<R: Real, L: Lane> UnderWay<R, L> for Uneven {
-    type Args = ThickRungArgs<R>;
-    const CHOOSES: bool = true;
-    #[inline(always)]
-    fn rung(args: &ThickRungArgs<R>) -> &RungArgs<R> {
-        &args.rung
-    }
-    #[inline(always)]
-    fn takes(lane: &L, args: &ThickRungArgs<R>, pair: Pair, is_face: bool) -> bool {
-        !is_even(radii_of(lane, args, pair, is_face))
-    }
-    #[inline(always)]
-    fn of_face(
-        lane: &L,
-        args: &ThickRungArgs<R>,
-        (pair, from): (Pair, f64),
-        _put: impl FnOnce(Normal<f64>),
-    ) -> Self {
-        let (face, radii, p) = face_of(lane, args, pair);
-        Uneven::begin(&face.of_four(), radii, from, &p)
-    }
-    #[inline(always)]
-    fn of_edges(
-        lane: &L,
-        args: &ThickRungArgs<R>,
-        (pair, from): (Pair, f64),
-        _put: impl FnOnce(Normal<f64>),
-    ) -> Self {
-        let (edges, radii, p) = edges_of(lane, args, pair);
-        Uneven::begin(&edges, radii, from, &p)
-    }
-    #[inline(always)]
-    fn is_face(&self) -> bool {
-        Uneven::is_face(self)
-    }
-    #[inline(always)]
-    fn step(&mut self, p: &Params, _normal: impl Fn() -> Normal<f64>) -> Option<Verdict> {
-        Uneven::step(self, p)
-    }
-}
-
-/// Radii of the control vectors of a pair.
-#[inline(always)]
-fn radii_of<R: Real, L: Lane>(lane: &L, args: &ThickRungArgs<R>, pair: Pair, is_face: bool) -> [f64; 4] {
-    if is_face {
-        radii_of_face(lane, args.radii, args.rung.faces, pair)
-    } else {
-        radii_of_edges(lane, args.radii, args.rung.edges, pair)
-    }
-}
-
-/// A vertex and a face, with radii and parameters.
-#[inline(always)]
-fn face_of<R: Real, L: Lane>(lane: &L, args: &ThickRungArgs<R>, pair: Pair) -> (Face<f64>, [f64; 4], Params) {
-    let radii = radii_of(lane, args, pair, true);
-    let p = of_radii(of_vertex_face(lane, &args.rung, pair), &args.rung.params, radii);
-    let (v, f) = vertex_face(lane, &args.rung.frames, args.rung.faces, pair);
-    (Face::new(v, f, &p), radii, p)
-}
-
-/// Two edges, with radii and parameters.
-#[inline(always)]
-fn edges_of<R: Real, L: Lane>(
-    lane: &L,
-    args: &ThickRungArgs<R>,
-    pair: Pair,
-) -> (Edges<f64>, [f64; 4], Params) {
-    let radii = radii_of(lane, args, pair, false);
-    let p = of_radii(of_edge_edge(lane, &args.rung, pair), &args.rung.params, radii);
-    let [x, y] = edge_edge(lane, &args.rung.frames, args.rung.edges, pair);
-    (Edges::new(x, y, &p), radii, p)
 }
 
 /// Parameters of a pair whose separation is that of the query, and the radius if there is one.
@@ -246,46 +173,38 @@ fn of_radii(of_bodies: Params, query: &Params, radii: [f64; 4]) -> Params {
     Params { min_separation: query.min_separation + radius, ..of_bodies }
 }
 
+impl Thick {
+    #[inline(always)]
+    fn begin(pair: Edges<f64>, radii: [f64; 4], from: f64, p: &Params) -> Self {
+        if is_even(radii) {
+            Thick::Even(Double::begin(pair, from, p))
+        } else {
+            Thick::Uneven(Uneven::begin(&pair, radii, from, p))
+        }
+    }
+}
+
 /// All pairs of both lists.
 #[inline(always)]
 pub fn separate<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
-    each::<R, B, Double>(block, args, None);
+    each::<R, B, Double>(block, args);
 }
 
-/// All pairs of both lists, of vertices with a thickness. First those of one radius a feature, then
-/// those of several: a lane with a pair of either form at a time would keep it in local memory.
+/// All pairs of both lists, of vertices with a thickness.
 #[inline(always)]
 pub fn thick<R: Real, B: Block>(block: &mut B, args: &ThickRungArgs<R>) {
-    let shares = each::<R, B, Even>(block, args, None);
-    each::<R, B, Uneven>(block, args, Some(shares));
+    each::<R, B, Thick>(block, args);
 }
 
-/// Shared memory of a block.
-#[derive(Clone, Copy)]
-struct Shares {
-    /// A normal a lane.
-    normals: Shared<u64>,
-    /// The numbers of pairs drawn, of either kind.
-    drawn: Shared<u32>,
-}
-
-/// All pairs of a form. Returns the shared memory, which is taken unless given.
 #[inline(always)]
-fn each<R: Real, B: Block, U: UnderWay<R, B::Lane>>(
-    block: &mut B,
-    of_kernel: &U::Args,
-    shares: Option<Shares>,
-) -> Shares {
+fn each<R: Real, B: Block, U: UnderWay<R, B::Lane>>(block: &mut B, of_kernel: &U::Args) {
     let args = U::rung(of_kernel);
     let (first, blocks) = (block.block(), block.blocks());
     // Whether f32 has left the pairs.
     let is_begun = !args.vf.begun.count().is_empty();
     let (count_vf, count_ee) = (listed(block, &args.vf, is_begun), listed(block, &args.ee, is_begun));
     let lanes = block.lanes();
-    let Shares { normals, drawn } = shares.unwrap_or_else(|| Shares {
-        normals: block.shared::<u64>(NUMBERS as u32 * lanes),
-        drawn: block.shared::<u32>(2),
-    });
+    let (normals, drawn) = (block.shared::<u64>(NUMBERS as u32 * lanes), block.shared::<u32>(2));
     block.phase(|lane| {
         if lane.lane() == 0 {
             lane.put(drawn, 0, 0);
@@ -311,7 +230,7 @@ fn each<R: Real, B: Block, U: UnderWay<R, B::Lane>>(
         // A quarter of the lanes begins with vertices and faces, so that few warps have both kinds.
         let (mut is_face, mut kinds) = (lane.lane() < lanes / 4, 2);
         while lane.any(kinds > 0 || under_way.is_some()) {
-            while kinds > 0 && under_way.is_none() {
+            if kinds > 0 && under_way.is_none() {
                 let i = blocks as u64 * lane.shared_add(drawn, is_face as u32, 1) as u64;
                 let (i, count) = if is_face {
                     (i + first as u64, count_vf)
@@ -322,17 +241,10 @@ fn each<R: Real, B: Block, U: UnderWay<R, B::Lane>>(
                     (is_face, kinds) = (!is_face, kinds - 1);
                 } else if is_face {
                     let begun = nth(lane, &args.vf, is_begun, i as u32);
-                    if U::takes(lane, of_kernel, begun.0, true) {
-                        under_way = Some((begun.0, U::of_face(lane, of_kernel, begun, put)));
-                    }
+                    under_way = Some((begun.0, U::of_face(lane, of_kernel, begun, put)));
                 } else {
                     let begun = nth(lane, &args.ee, is_begun, i as u32);
-                    if U::takes(lane, of_kernel, begun.0, false) {
-                        under_way = Some((begun.0, U::of_edges(lane, of_kernel, begun, put)));
-                    }
-                }
-                if !U::CHOOSES {
-                    break;
+                    under_way = Some((begun.0, U::of_edges(lane, of_kernel, begun, put)));
                 }
             }
             // Lanes that drew and lanes that did not step side by side.
@@ -350,5 +262,4 @@ fn each<R: Real, B: Block, U: UnderWay<R, B::Lane>>(
         }
         lane.meet();
     });
-    Shares { normals, drawn }
 }
