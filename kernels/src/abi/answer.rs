@@ -7,7 +7,7 @@ use bytemuck::{Pod, Zeroable};
 
 /// Geometry of a row. Unused rows are zeros.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-#[repr(C)]
+#[repr(C, align(16))]
 pub struct RowGeometry {
     /// Distance of the nearest points.
     pub distance: f64,

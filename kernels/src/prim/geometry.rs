@@ -69,11 +69,6 @@ impl Connection {
         let now = corners.now;
         let (first, weights) = (vertices_of_a(kind), weights(kind, now));
         let apart = gap(first, &weights, &now);
-        let across = match kind {
-            code::VERTEX_FACE => unit(now[2] - now[1]).cross(unit(now[3] - now[1])),
-            code::EDGE_EDGE => unit(now[1] - now[0]).cross(unit(now[3] - now[2])),
-            _ => NONE,
-        };
         let (mut extent, mut k) = (0.0, 1);
         while k < 4 {
             extent = Real::max(length(now[k] - now[0]), extent);
@@ -82,9 +77,11 @@ impl Connection {
         let [start, end] = [gap(first, &weights, &corners.before), gap(first, &weights, &corners.after)];
         // The gap at the start of a turn says nothing of the approach. The motion does.
         let came = if corners.turns { start - end } else { start };
-        let normal = if length(apart) > DIRECTION * extent { apart } else { touching(across, came, end) };
+        let distance = length(apart);
+        let normal =
+            if distance > DIRECTION * extent { apart } else { touching(across(kind, &now), came, end) };
         let points = [point(&now, &weights, 0, first), point(&now, &weights, first, 4)];
-        Connection { weights, points, distance: length(apart), normal: unit(normal) }
+        Connection { weights, points, distance, normal: unit(normal) }
     }
 
     /// The weights, negative for the second feature.
@@ -100,6 +97,16 @@ impl Connection {
 #[inline(always)]
 pub fn vertices_of_a(kind: u8) -> usize {
     if kind == code::EDGE_EDGE || kind == code::EDGE_VERTEX { 2 } else { 1 }
+}
+
+/// The normal of the face or of both edges, not of unit length; zeros if there is none.
+#[inline(always)]
+fn across(kind: u8, now: &[Vec3<f64>; 4]) -> Vec3<f64> {
+    match kind {
+        code::VERTEX_FACE => unit(now[2] - now[1]).cross(unit(now[3] - now[1])),
+        code::EDGE_EDGE => unit(now[1] - now[0]).cross(unit(now[3] - now[2])),
+        _ => NONE,
+    }
 }
 
 /// The direction of features that touch: on the side from which the first one came. If it started in
