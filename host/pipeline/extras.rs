@@ -213,7 +213,7 @@ impl Groups {
         };
         launch::striding::<K>(device, keys.len() / self.width as usize, &args)?;
         sort(device, [keys, other], (count, Span::EMPTY), self.counts.span(), &self.shifts)?;
-        let sorted = if self.shifts.len() % 2 == 0 { keys } else { other };
+        let sorted = if self.shifts.len().is_multiple_of(2) { keys } else { other };
         let args =
             AnswerGroupsArgs { keys: sorted.span(), starts: self.starts.span(), rows: self.rows.span() };
         launch::striding::<entry::answer_groups>(device, keys.len().max(self.starts.len()), &args)

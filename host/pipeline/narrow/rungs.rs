@@ -142,11 +142,11 @@ impl Rungs {
     pub fn thicken(&mut self, device: &Device, radii: &[f64]) -> Result<(), Error> {
         self.radii = device.of(purpose::RADII).upload(radii)?;
         for rung in &mut self.rungs {
-            *rung = match *rung {
-                Rung::Separate32 => Rung::Part,
-                Rung::Separate64 => Rung::SeparateThick,
-                other => other,
-            };
+            if *rung == Rung::Separate32 {
+                *rung = Rung::Part;
+            } else if *rung == Rung::Separate64 {
+                *rung = Rung::SeparateThick;
+            }
         }
         Ok(())
     }
@@ -282,10 +282,12 @@ impl Rungs {
                 break;
             }
             let left = self.left.get(at);
-            let outputs = match rung {
-                Rung::Approach | Rung::ApproachSigns => [to_solver, left],
-                Rung::ApproachExact => [left, None],
-                _ => [left, asked],
+            let outputs = if rung == Rung::ApproachExact {
+                [left, None]
+            } else if rung.is_before() {
+                [to_solver, left]
+            } else {
+                [left, asked]
             };
             run(rung, before, outputs)?;
             if rung == Rung::Isolate64 && asked.is_some_and(|asked| asked.capacity() > 0) {

@@ -9,8 +9,8 @@
 //!
 //! | bits of coordinates | a component has | a product of `n` has |
 //! | --- | --- | --- |
-//! | to [`SMALL`], most sets of f32 | 64 bits, with the sign | `64 n` bits |
-//! | to [`LARGE`], all sets of f32 | ten limbs of 32 bits | `10 n` limbs |
+//! | to `SMALL`, most sets of f32 | 64 bits, with the sign | `64 n` bits |
+//! | to `LARGE`, all sets of f32 | ten limbs of 32 bits | `10 n` limbs |
 //!
 //! The small size has no loop of unknown length and no array on the stack.
 
