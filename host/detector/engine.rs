@@ -26,8 +26,6 @@ pub struct Engine {
     pub has_vertices: bool,
     /// Whether queries read bodies as instances if they can, as long as there is this pipeline.
     pub has_instances: bool,
-    /// Whether a submission was prepared: these read vertices.
-    pub submits: bool,
     /// Whether a submission of bodies is prepared of which none may meet, so without a pipeline.
     pub submits_alone: bool,
     /// Query whose answer the device holds, for the current positions.
@@ -51,8 +49,8 @@ impl Engine {
     /// Those of the device.
     pub fn begin(&mut self, device: &Device, scene: &Scene, layout: Arc<Layout>) -> Result<(), Error> {
         self.holds_f64 = scene.bodies().iter().any(Body::needs_f64);
-        let (has_ends, has_vertices) = (self.has_ends, self.has_vertices);
-        let parts = SceneParts { layout, holds_f64: self.holds_f64, has_ends, has_vertices };
+        let (has_ends, has_vertices, has_instances) = (self.has_ends, self.has_vertices, self.has_instances);
+        let parts = SceneParts { layout, holds_f64: self.holds_f64, has_ends, has_vertices, has_instances };
         self.pipeline = Some(pipeline::pipeline(device.clone(), scene.bodies(), &parts)?);
         (self.frames, self.last) = (0, None);
         Ok(())

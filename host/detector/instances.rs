@@ -5,22 +5,20 @@ use super::Detector;
 use crate::error::Error;
 use crate::pipeline::Share;
 use crate::query::Query;
-use crate::scene::{Body, BodyKind};
+use crate::scene::BodyKind;
 
 impl Detector {
     /// Whether the scene's bodies can be read as instances. All bodies with triangles must be rigid
-    /// or fixed, with poses that the host has, and none is tested against itself. Shares, slices,
-    /// submissions and scenes that exclude pairs of features read vertices.
+    /// or fixed, and none is tested against itself. Shares, slices and scenes that exclude pairs of
+    /// features read vertices.
     fn allows_instances(&self) -> bool {
         let bodies = self.scene.bodies();
         let mut solid = bodies.iter().filter(|body| body.element_count() > 0);
         let is_whole =
             self.portion.share == Share::WHOLE && !self.portion.is_part && !self.portion.has_slices();
         is_whole
-            && !self.engine.submits
             && solid.clone().any(|body| body.kind() == BodyKind::Rigid)
             && solid.all(|body| body.kind() != BodyKind::Deformable && !body.self_collides())
-            && !bodies.iter().any(Body::is_device_resident)
             && self.scene.excluded.is_empty()
     }
 
@@ -30,8 +28,7 @@ impl Detector {
         self.engine.has_vertices |= !self.engine.has_instances;
     }
 
-    /// Refuses a query of pairs of bodies that cannot be answered: by shares of several devices, or if
-    /// only the device has the pose of a rigid body.
+    /// Refuses a query of pairs of bodies by shares of several devices.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`].
@@ -47,19 +44,15 @@ impl Detector {
                 advice: "use a `Detector` on one device".into(),
             });
         }
-        let is_on_device = |body: &&Body| body.kind() == BodyKind::Rigid && body.is_device_resident();
-        if self.scene.bodies().iter().any(|body| is_on_device(&body)) {
-            return Err(Error::InvalidArgument {
-                what: format!("a {kind} query needs poses of rigid bodies that the host has"),
-                advice: "move rigid bodies by `Motion::Pose` before this query".into(),
-            });
-        }
         Ok(())
     }
 
     /// Returns whether a query reads instances. If it reads vertices and the pipeline has none, the
-    /// next pipeline will have them: the host has every pose.
-    pub(super) fn reads_instances(&mut self, query: &Query) -> bool {
+    /// next pipeline will have them.
+    ///
+    /// # Errors
+    /// As of [`Detector::download_positions`].
+    pub(super) fn reads_instances(&mut self, query: &Query) -> Result<bool, Error> {
         if self.engine.pipeline.is_none() {
             self.choose_instances();
         }
@@ -69,17 +62,11 @@ impl Detector {
         let may_read = query.may_read_instances() && !is_thick;
         let reads = is_of_bodies || self.engine.has_instances && may_read;
         if !reads && !self.engine.has_vertices {
+            // Poses that only the device has are downloaded before its memory is freed.
+            self.download_positions()?;
             self.engine.drop_pipeline();
             self.engine.has_vertices = true;
         }
-        reads
-    }
-
-    /// Makes all queries read vertices from now on, for submissions. A pipeline of instances has no
-    /// position that the host has not.
-    pub(super) fn begin_submissions(&mut self) {
-        if !std::mem::replace(&mut self.engine.submits, true) && self.engine.has_instances {
-            self.engine.drop_pipeline();
-        }
+        Ok(reads)
     }
 }

@@ -75,11 +75,6 @@ impl Detector {
         if self.placed.mark(self.scene.bodies().len(), moved) {
             self.engine.pipeline.iter_mut().for_each(|pipeline| pipeline.add_new_place());
         }
-        if self.engine.has_instances && self.scene.bodies().iter().any(|body| body.device_motion().is_some())
-        {
-            // Poses of instances come from the host. The host has all other positions.
-            self.engine.drop_pipeline();
-        }
         let widens =
             !self.engine.holds_f64 && moved.iter().any(|moved| self.scene.bodies()[moved.body].needs_f64());
         if widens && self.engine.pipeline.is_some() {

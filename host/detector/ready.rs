@@ -108,7 +108,7 @@ impl Detector {
             self.engine.drop_pipeline();
             self.engine.has_ends = true;
         }
-        let is_of_instances = self.reads_instances(&question.query);
+        let is_of_instances = self.reads_instances(&question.query)?;
         self.begin_scene()?;
         let (bodies, slice) = (self.scene.bodies(), self.portion.first_slice(&question.query));
         let Some(pipeline) = &mut self.engine.pipeline else { return Ok(None) };

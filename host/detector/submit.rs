@@ -114,7 +114,6 @@ impl Detector {
         let in_motion = queries.iter().find(|query| !query.kind().is_at_rest());
         // If any query will read the end of the step, positions have room for it from the first on.
         self.engine.has_ends |= in_motion.is_some() && self.engine.pipeline.is_none();
-        self.begin_submissions();
         self.apply(&given, in_motion)?;
         self.has_geometry_on_device(in_motion, extras)?;
         let questions = queries.iter().map(|&query| self.question(query)).collect::<Result<Vec<_>, _>>()?;

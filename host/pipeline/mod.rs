@@ -52,6 +52,8 @@ pub struct SceneParts {
     pub has_ends: bool,
     /// Whether a query reads vertices in the scene. Others read bodies as instances.
     pub has_vertices: bool,
+    /// Whether queries read bodies as instances if they can.
+    pub has_instances: bool,
 }
 
 /// Parameters of a query of the scene.

@@ -186,7 +186,7 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
     }
 
     fn whereabouts(&self) -> Result<Whereabouts, Error> {
-        self.scene.whereabouts(self.queries.first().map(|query| &*query.layout))
+        self.scene.whereabouts()
     }
 
     fn ready(&mut self, query: usize, bodies: &[Body]) -> Result<bool, Error> {
@@ -312,7 +312,13 @@ fn one(
     query: Query,
 ) -> (TypedPipeline<f32>, usize) {
     let has_ends = !query.kind().is_at_rest();
-    let parts = SceneParts { layout: layout.clone(), holds_f64: false, has_ends, has_vertices: true };
+    let parts = SceneParts {
+        layout: layout.clone(),
+        holds_f64: false,
+        has_ends,
+        has_vertices: true,
+        has_instances: false,
+    };
     let mut pipeline = TypedPipeline::<f32>::new(device.clone(), bodies, &parts).expect("memory");
     let at = pipeline.take_query(&QueryParts::whole(layout.clone(), query)).expect("memory");
     pipeline.ready(at, bodies).expect("ready");

@@ -120,6 +120,7 @@ kernels! {
     place_starts_f32: starts::starts::<f32, B>, [StartsArgs<f32>], WIDE, 0;
     place_starts_f64: starts::starts::<f64, B>, [StartsArgs<f64>], WIDE, 0;
     place_turns: turns::turns, [TurnsArgs], NARROW, 0;
+    place_poses: place::poses::poses, [PlacePosesArgs], NARROW, place::SHARED;
     construct_bounds_f32: morton::bounds::<f32, B>, [MortonArgs<f32>], WIDE, centres::shared_bytes(WIDE);
     construct_bounds_f64: morton::bounds::<f64, B>, [MortonArgs<f64>], WIDE, centres::shared_bytes(WIDE);
     construct_morton_f32: morton::morton::<f32, B>, [MortonArgs<f32>], WIDE, 0;

@@ -2,6 +2,7 @@
 //! path by tiles, which places all: both must list the same pairs.
 
 mod alike;
+mod lent;
 mod lists;
 mod motion;
 mod touching;

@@ -18,9 +18,10 @@ pub const STAGES: [(&str, &str); 10] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 110] = [
+const KERNELS: [(&str, &str); 111] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
     ("place_turns", "rotation vectors and paths of bodies that turn"),
+    ("place_poses", "poses of instances, from the caller's memory and the host"),
     ("place", "poses applied, uploads put in place, other bodies at rest"),
     ("construct_bounds", "the box of each body's centres"),
     ("construct_runs", "runs of 16 tiles in halves of halves, on chip"),

@@ -4,15 +4,17 @@
 mod deformed;
 mod mesh;
 mod motion;
+mod poses;
 
 pub use motion::InMotion;
 
 use super::layout::Layout;
+use super::placing::DeviceArrays;
 use super::purpose;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::precision::Precision;
-use crate::scene::{Body, BodyKind, Pose};
+use crate::scene::{Body, Pose};
 use deformed::{Deformed, deforms};
 use mesh::MeshTiles;
 use nearmiss_kernels::abi::{
@@ -20,6 +22,7 @@ use nearmiss_kernels::abi::{
     PoseRecord, Span,
 };
 use nearmiss_kernels::math::{Vec3, rigid};
+use poses::Poses;
 use std::collections::HashMap;
 
 /// Meshes and poses on a device.
@@ -32,7 +35,7 @@ pub struct Instances {
     leaves: Buffer<MeshLeaf>,
     columns: Buffer<u32>,
     vertices: Buffer<Point<f64>>,
-    poses: Buffer<PoseRecord>,
+    poses: Poses,
     tiles: u32,
     /// Meshes that are refitted; `None` without a deformable body.
     deformed: Option<Deformed>,
@@ -40,10 +43,9 @@ pub struct Instances {
     motion: Option<InMotion>,
     /// Most levels of nodes above the tiles of a mesh.
     pub levels: u32,
-    /// Poses on the host, the centre of each body's mesh, and its first vertex among all meshes'.
-    placed: Vec<PoseRecord>,
+    /// The centre of each body's mesh; its first vertex in the scene, and among all meshes'.
     centres: Vec<[f64; 3]>,
-    first_vertices: Vec<u32>,
+    first_vertices: Vec<[u32; 2]>,
 }
 
 /// Returns the body that first has the mesh of each body with triangles. Equal meshes are one, except
@@ -69,17 +71,13 @@ fn shared(bodies: &[Body]) -> Vec<Option<usize>> {
     bodies.iter().enumerate().map(first).collect()
 }
 
-/// The pose of a body; a body that is no rigid one is where its mesh is, exactly.
-fn pose(body: &Body) -> PoseRecord {
-    if body.kind() == BodyKind::Rigid { body.poses()[0].record() } else { Pose::default().record() }
-}
-
 impl Instances {
-    /// Uploads meshes and poses.
+    /// Uploads meshes and poses. `found` has two poses for each body whose poses only the device has;
+    /// it is empty without such.
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(device: &Device, bodies: &[Body], layout: &Layout) -> Result<Self, Error> {
+    pub fn new(device: &Device, bodies: &[Body], layout: &Layout, found: &[Pose]) -> Result<Self, Error> {
         let firsts = shared(bodies);
         let (mut meshes, mut of_body): (Vec<MeshTiles>, HashMap<usize, u32>) = Default::default();
         for (at, body) in bodies.iter().enumerate().filter(|(at, _)| firsts[*at] == Some(*at)) {
@@ -92,8 +90,10 @@ impl Instances {
             .map(|at| InstanceRecord { mesh: mesh(at), triangle: layout.starts[at].triangle })
             .collect();
         let centre = |record: &InstanceRecord| all.meshes.get(record.mesh as usize).map(|mesh| mesh.centre);
-        let first_vertex = |record: &InstanceRecord| all.first_vertices.get(record.mesh as usize).copied();
-        let placed: Vec<PoseRecord> = bodies.iter().map(pose).collect();
+        let first_vertex = |(at, record): (usize, &InstanceRecord)| {
+            let of_mesh = all.first_vertices.get(record.mesh as usize).copied();
+            [layout.starts[at].vertex, of_mesh.unwrap_or_default()]
+        };
         let (of_meshes, of_bodies) = (device.of(purpose::MESHES), device.of(purpose::INSTANCES));
         Ok(Instances {
             meshes: of_meshes.upload(&all.meshes)?,
@@ -104,14 +104,13 @@ impl Instances {
             leaves: of_meshes.upload(&all.leaves)?,
             columns: of_meshes.upload(&all.columns)?,
             vertices: of_meshes.upload(&all.vertices)?,
-            poses: device.of(purpose::POSES).upload(&placed)?,
+            poses: Poses::new(device, bodies, found)?,
             tiles: all.tiles,
             deformed: Deformed::new(device, bodies, layout, (&all, &records))?,
             motion: None,
             levels: all.levels,
             centres: records.iter().map(|record| centre(record).unwrap_or_default()).collect(),
-            first_vertices: records.iter().map(|record| first_vertex(record).unwrap_or_default()).collect(),
-            placed,
+            first_vertices: records.iter().enumerate().map(first_vertex).collect(),
         })
     }
 
@@ -128,15 +127,28 @@ impl Instances {
         self.deformed.as_ref().map_or(Ok(()), |own| own.refit(device, self.tables(), positions))
     }
 
-    /// Uploads the poses of all bodies.
+    /// Places all bodies: by poses of the host, or of the caller's memory.
     ///
     /// # Errors
     /// Device errors.
     pub fn put(&mut self, device: &Device, bodies: &[Body]) -> Result<(), Error> {
-        self.placed.clear();
-        self.placed.extend(bodies.iter().map(pose));
-        self.poses.write(&self.placed)?;
-        self.motion.as_mut().map_or(Ok(()), |motion| motion.put(device, bodies))
+        let (tables, vertices) = (self.tables(), &self.first_vertices);
+        self.poses.put(device, (bodies, tables), |body| vertices[body][0])?;
+        self.motion.as_mut().map_or(Ok(()), |motion| motion.put(device, (bodies, vertices), &self.poses))
+    }
+
+    /// Places the bodies of the last frame again, from the same addresses in the caller's memory.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn again(&mut self, device: &Device) -> Result<(), Error> {
+        self.poses.again(device)?;
+        self.motion.as_ref().map_or(Ok(()), |motion| motion.again(device, &self.poses))
+    }
+
+    /// Returns the poses of the caller's memory.
+    pub fn arrays(&self) -> &DeviceArrays {
+        self.poses.arrays()
     }
 
     /// Readies motions for a query of features, at rest or in motion.
@@ -152,8 +164,8 @@ impl Instances {
         let motion = match &mut self.motion {
             Some(motion) => motion,
             none => {
-                let mut motion = InMotion::new(device, bodies, layout, &self.first_vertices)?;
-                motion.put(device, bodies)?;
+                let mut motion = InMotion::new(device, bodies, layout)?;
+                motion.put(device, (bodies, &self.first_vertices), &self.poses)?;
                 none.insert(motion)
             }
         };
@@ -165,16 +177,9 @@ impl Instances {
         self.motion.as_ref()
     }
 
-    /// Returns whether bodies have other poses than those on the device. By bytes: the sign of a zero
-    /// may change the bits of a placed vertex.
+    /// Returns whether the host has poses that the device has not.
     pub fn differ(&self, bodies: &[Body]) -> bool {
-        if let Some(motion) = &self.motion {
-            // It has this pose and the one at the end.
-            return motion.differ(bodies);
-        }
-        let is_other =
-            |(held, body): (&PoseRecord, &Body)| bytemuck::bytes_of(held) != bytemuck::bytes_of(&pose(body));
-        self.placed.iter().zip(bodies).any(is_other)
+        self.poses.differ(bodies)
     }
 
     /// Returns meshes and bodies, for kernels.
@@ -193,32 +198,34 @@ impl Instances {
         }
     }
 
-    /// Returns a pose for each body, for kernels.
+    /// Returns two poses for each body, for kernels.
     pub fn poses(&self) -> Span<PoseRecord> {
         self.poses.span()
     }
 
-    /// Returns the placed centre of a body's mesh.
-    pub fn centre(&self, body: usize) -> [f64; 3] {
-        let pose = &self.placed[body];
-        rigid::moved(&rigid::rows(pose.rotation), &pose.translation, Vec3(self.centres[body])).0
+    /// Returns the placed centre of each body's mesh, at the start.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn centres(&self) -> Result<Vec<[f64; 3]>, Error> {
+        let poses = self.poses.read()?;
+        let placed = |(pose, &centre): (&PoseRecord, &[f64; 3])| {
+            rigid::moved(&rigid::rows(pose.rotation), &pose.translation, Vec3(centre)).0
+        };
+        Ok(poses.iter().step_by(2).zip(&self.centres).map(placed).collect())
     }
 
-    /// Returns the placed vertices of all bodies at an end of the step. Bodies without a motion have
-    /// one end.
+    /// Returns the placed vertices of all bodies at an end of the step.
     ///
     /// # Errors
     /// Device errors.
     pub fn positions(&self, layout: &Layout, end: usize) -> Result<Vec<Vec3<f64>>, Error> {
         let vertices = self.vertices.read(self.vertices.len())?;
-        let poses: Vec<&PoseRecord> = match &self.motion {
-            Some(motion) => motion.placed(end).collect(),
-            None => self.placed.iter().collect(),
-        };
+        let poses = self.poses.read()?;
         let mut all = Vec::new();
-        for (body, pose) in poses.into_iter().enumerate() {
+        for (body, pose) in poses.iter().skip(end).step_by(2).enumerate() {
             let count = (layout.starts[body + 1].vertex - layout.starts[body].vertex) as usize;
-            let first = self.first_vertices[body] as usize;
+            let first = self.first_vertices[body][1] as usize;
             let rows = rigid::rows(pose.rotation);
             // A body without triangles has no mesh here.
             let own = vertices.iter().skip(first).take(count).map(|point| point.at);

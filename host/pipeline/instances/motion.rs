@@ -1,32 +1,28 @@
-//! Instances in motion: two poses a body, and the vertices of candidates.
+//! Instances in motion: turns of bodies, and the vertices of candidates.
 //!
 //! Vertices and faces have their numbers in the scene, so that the narrow phase reads them as it reads
 //! those that are all placed. Only vertices of candidates are placed: the others are memory that
 //! nothing writes or reads.
 
+use super::poses::Poses;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::placing::turns::{self, Turns};
 use crate::pipeline::purpose;
-use crate::scene::{Body, BodyKind, Pose};
+use crate::scene::{Body, DeviceMotion};
 use nearmiss_kernels::abi::{
     BodiesArgs, CandidateVerticesArgs, InstanceFrame, InstanceMotion, InstanceTables, MovingBodiesArgs,
-    MovingRelation, NodePair, Output, POSED, Pair, Placement, Point, PoseRecord, Positions, Span, TurnSource,
+    MovingRelation, NodePair, Output, POSED, Pair, Placement, Point, Positions, Span, TurnSource,
     VertexMotion,
 };
 
 /// Motions of bodies, and vertices of candidates.
 pub struct InMotion {
-    /// Two poses a body; and on the host.
-    poses: Buffer<PoseRecord>,
-    placed: Vec<PoseRecord>,
     ends: Buffer<InstanceFrame>,
     motions: Buffer<InstanceMotion>,
     /// Bodies that may turn on their arcs.
     turns: Turns,
-    /// Each body's first vertex in the scene, and among those of all meshes.
-    firsts: Vec<[u32; 2]>,
     faces: Buffer<[u32; 3]>,
     /// Vertices of the scene at one end, or at both: empty before a query that reads them.
     still: Buffer<Point<f64>>,
@@ -36,31 +32,21 @@ pub struct InMotion {
     frame: Buffer<u64>,
 }
 
-/// Both poses of a body; one that is no rigid one is where its mesh is, exactly.
-fn poses(body: &Body) -> [PoseRecord; 2] {
-    let is_rigid = body.kind() == BodyKind::Rigid;
-    if is_rigid { body.poses().map(|pose| pose.record()) } else { [Pose::default().record(); 2] }
-}
-
 impl InMotion {
-    /// Allocates the memory of bodies with these first vertices among those of all meshes.
+    /// Allocates the memory of bodies.
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(device: &Device, bodies: &[Body], layout: &Layout, firsts: &[u32]) -> Result<Self, Error> {
+    pub fn new(device: &Device, bodies: &[Body], layout: &Layout) -> Result<Self, Error> {
         let of_bodies = device.of(purpose::INSTANCES);
         let vertices = layout.starts[layout.bodies()].vertex as usize;
         let (mut placed_in, mut frame) = (device.of(purpose::PLACED).buffer(vertices)?, of_bodies.buffer(1)?);
         placed_in.clear()?;
         frame.clear()?;
-        let starts = layout.starts.iter().zip(firsts);
         Ok(InMotion {
-            poses: device.of(purpose::POSES).buffer(2 * bodies.len())?,
-            placed: Vec::new(),
             ends: of_bodies.buffer(bodies.len())?,
             motions: of_bodies.buffer(bodies.len())?,
             turns: Turns::new(device)?,
-            firsts: starts.map(|(start, &first)| [start.vertex, first]).collect(),
             faces: device.of(purpose::FACES).upload(&layout.faces)?,
             still: device.buffer(0)?,
             moving: device.buffer(0)?,
@@ -84,32 +70,35 @@ impl InMotion {
         Ok(())
     }
 
-    /// Uploads the poses of all bodies, and places their turns.
+    /// Places the turns of all bodies by their poses. Given are the first vertices of each body in the
+    /// scene and among those of all meshes.
     ///
     /// # Errors
     /// Device errors.
-    pub fn put(&mut self, device: &Device, bodies: &[Body]) -> Result<(), Error> {
-        self.placed.clear();
-        self.placed.extend(bodies.iter().flat_map(poses));
-        self.poses.write(&self.placed)?;
+    pub fn put(
+        &mut self,
+        device: &Device,
+        (bodies, firsts): (&[Body], &[[u32; 2]]),
+        poses: &Poses,
+    ) -> Result<(), Error> {
         let source = |(at, (body, &[vertex, source])): (usize, (&Body, &[u32; 2]))| {
             let pose = 2 * at as u32;
             let placement = Placement { vertex, source, pose, from: POSED, ..Placement::default() };
-            turns::source(body, &placement, 0.0)
+            let moves = body.device_motion().map_or(body.is_moving(), DeviceMotion::is_moving);
+            let stands = body.is_device_resident() && !moves;
+            if stands { None } else { turns::source(body, &placement, 0.0) }
         };
-        let sources: Vec<TurnSource> =
-            bodies.iter().zip(&self.firsts).enumerate().filter_map(source).collect();
+        let sources: Vec<TurnSource> = bodies.iter().zip(firsts).enumerate().filter_map(source).collect();
         self.turns.hold(device, sources)?;
-        turns::launch(device, &self.turns.args(self.poses.span(), Span::EMPTY))
+        self.again(device, poses)
     }
 
-    /// Returns whether bodies have other poses than those on the device. By bytes: the sign of a zero
-    /// may change the bits of a placed vertex.
-    pub fn differ(&self, bodies: &[Body]) -> bool {
-        let all = bodies.iter().flat_map(poses);
-        let is_other =
-            |(held, own): (&PoseRecord, PoseRecord)| bytemuck::bytes_of(held) != bytemuck::bytes_of(&own);
-        self.placed.iter().zip(all).any(is_other)
+    /// Places the same turns again.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn again(&self, device: &Device, poses: &Poses) -> Result<(), Error> {
+        turns::launch(device, &self.turns.args(poses.span(), poses.arrays().found.span()))
     }
 
     /// Returns the frames at the end, for kernels.
@@ -127,11 +116,6 @@ impl InMotion {
         self.faces.span()
     }
 
-    /// Returns the pose of each body at an end.
-    pub fn placed(&self, end: usize) -> impl Iterator<Item = &PoseRecord> {
-        self.placed.iter().skip(end).step_by(2)
-    }
-
     /// Returns the vertices of candidates, at one end or in motion.
     pub fn vertices(&self, is_at_rest: bool) -> Positions<f64> {
         if is_at_rest {
@@ -144,7 +128,7 @@ impl InMotion {
     /// Returns arguments to fit bodies around these poses of each.
     pub fn fit_args(&self, of: BodiesArgs, poses: u32) -> MovingBodiesArgs {
         MovingBodiesArgs {
-            of: BodiesArgs { poses: self.poses.span(), ..of },
+            of,
             ends: self.ends.span(),
             motions: self.motions.span(),
             turns: if poses == 1 { Span::EMPTY } else { self.turns.span() },

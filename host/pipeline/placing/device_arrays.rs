@@ -7,7 +7,7 @@ use crate::mesh;
 use crate::pipeline::launch;
 use crate::pipeline::precision::Precision;
 use crate::scene::Pose;
-use nearmiss_kernels::abi::{Lent, PoseRecord, Span, seen};
+use nearmiss_kernels::abi::{Lent, PoseRecord, seen};
 
 /// Memory to place bodies from the caller's memory.
 pub struct DeviceArrays {
@@ -71,16 +71,54 @@ impl DeviceArrays {
         if !self.any {
             return Ok(());
         }
-        if self.seen.is_empty() {
-            self.seen = device.buffer(seen::COUNT as usize)?;
-            self.found = device.buffer(poses)?;
-        }
+        self.reserve(device, poses)?;
         self.seen.clear()?;
         if places != self.held {
             write(device, &mut self.places, &places)?;
             self.held = places;
         }
         Ok(())
+    }
+}
+
+impl DeviceArrays {
+    /// Allocates the checks, and room for `poses` poses.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn reserve(&mut self, device: &Device, poses: usize) -> Result<(), Error> {
+        if self.seen.is_empty() {
+            self.seen = device.buffer(seen::COUNT as usize)?;
+            self.found = device.buffer(poses)?;
+        }
+        Ok(())
+    }
+
+    /// Returns the memory that [`DeviceArrays::seen`] reads, to be read ahead.
+    pub fn ahead(&self) -> Option<Ahead<'_>> {
+        self.any.then(|| self.seen.ahead(seen::COUNT as usize))
+    }
+
+    /// Returns the last frame's checks of the caller's numbers; `None` if it read none.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn seen(&self) -> Result<Option<Seen>, Error> {
+        if !self.any {
+            return Ok(None);
+        }
+        let words = self.seen.read(seen::COUNT as usize)?;
+        let word = |at: u32| words[at as usize];
+        Ok(Some(Seen { invalid: word(seen::INVALID) > 0, largest: f64::from_bits(word(seen::LARGEST)) }))
+    }
+
+    /// Returns the poses alone, as in [`Whereabouts::poses`].
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn poses(&self) -> Result<Vec<Pose>, Error> {
+        let pose = |found: &PoseRecord| Pose { rotation: found.rotation, translation: found.translation };
+        Ok(self.found.read(self.found.len())?.iter().map(pose).collect())
     }
 }
 
@@ -106,27 +144,9 @@ impl<R: Precision> Placing<R> {
         !matches!(self.last, Last::Host)
     }
 
-    /// Returns the memory that [`Placing::seen`] reads, to be read ahead.
-    pub fn ahead(&self) -> Option<Ahead<'_>> {
-        self.arrays.any.then(|| self.arrays.seen.ahead(seen::COUNT as usize))
-    }
-
-    /// Returns the checks of the caller's numbers, for a kernel.
-    pub fn seen_span(&self) -> Span<u64> {
-        self.arrays.seen.span()
-    }
-
-    /// Returns the last frame's checks of the caller's numbers; `None` if it read none.
-    ///
-    /// # Errors
-    /// Device errors.
-    pub fn seen(&self) -> Result<Option<Seen>, Error> {
-        if !self.arrays.any {
-            return Ok(None);
-        }
-        let words = self.arrays.seen.read(seen::COUNT as usize)?;
-        let word = |at: u32| words[at as usize];
-        Ok(Some(Seen { invalid: word(seen::INVALID) > 0, largest: f64::from_bits(word(seen::LARGEST)) }))
+    /// Returns the data of bodies in memory of the caller.
+    pub fn arrays(&self) -> &DeviceArrays {
+        &self.arrays
     }
 
     /// Returns the positions of all bodies.
@@ -146,22 +166,13 @@ impl<R: Precision> Placing<R> {
             ends.push(end);
         }
         // The second pose of a body is valid if it has two ends.
-        let found = self.poses()?;
+        let found = self.arrays.poses()?;
         let has_end = |body: usize| looked_at == 2 || self.keeps[body];
         let of = |(body, found): (usize, &[Pose])| {
             [0, usize::from(has_end(body))].map(|end| found[end]).into_iter().take(ends.len())
         };
         let poses = found.chunks_exact(2).enumerate().flat_map(of).collect();
-        let seen = self.seen()?;
+        let seen = self.arrays.seen()?;
         Ok(Whereabouts { ends: ends.into_iter().map(R::positions).collect(), looked_at, poses, seen })
-    }
-
-    /// Returns the poses alone, as in [`Whereabouts::poses`].
-    ///
-    /// # Errors
-    /// Device errors.
-    pub fn poses(&self) -> Result<Vec<Pose>, Error> {
-        let pose = |found: &PoseRecord| Pose { rotation: found.rotation, translation: found.translation };
-        Ok(self.arrays.found.read(self.arrays.found.len())?.iter().map(pose).collect())
     }
 }

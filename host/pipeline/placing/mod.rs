@@ -4,7 +4,7 @@ mod device_arrays;
 pub mod turns;
 mod vertices;
 
-pub use device_arrays::{Seen, Whereabouts};
+pub use device_arrays::{DeviceArrays, Seen, Whereabouts};
 
 use super::layout::Layout;
 use super::precision::Precision;
@@ -14,7 +14,6 @@ use crate::mesh;
 use crate::pipeline::{launch, purpose};
 use crate::scene::{Body, BodyKind, DeviceMotion, Pose};
 use bytemuck::Pod;
-use device_arrays::DeviceArrays;
 use nearmiss_kernels::abi::{
     KEEPS_END, LENT, LENT_POSES, POSED, PlaceArgs, Placement, Point, PoseRecord, Positions, RESTING, Span,
     StartsArgs, TurnRecord, TurnsArgs, UPLOADED,
@@ -340,7 +339,10 @@ fn largest<'a>(bodies: impl Iterator<Item = &'a Body>) -> f64 {
 }
 
 /// Sets the first elements of a buffer, which grows if it must.
-fn write<T: Pod>(device: &Device, buffer: &mut Buffer<T>, items: &[T]) -> Result<(), Error> {
+///
+/// # Errors
+/// Device errors.
+pub fn write<T: Pod>(device: &Device, buffer: &mut Buffer<T>, items: &[T]) -> Result<(), Error> {
     if items.len() > buffer.len() {
         *buffer = device.buffer(items.len())?;
     }

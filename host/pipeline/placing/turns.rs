@@ -80,7 +80,7 @@ pub fn source(body: &Body, placement: &Placement, fixed: f64) -> Option<TurnSour
         fixed,
         ..TurnSource::default()
     };
-    if body.device_motion().is_some() {
+    if body.is_device_resident() {
         return Some(TurnSource { is_lent: 1, ..source });
     }
     let (pivot, turn) = body.turn()?;

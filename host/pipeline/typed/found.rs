@@ -124,7 +124,7 @@ impl<R: Precision> QueryMemory<R> {
     /// contacts as the last frame had.
     pub(super) fn read_ahead(&self, scene: &SceneMemory<R>) -> Result<(), Error> {
         let mut all = vec![self.counters.ahead()];
-        all.extend(scene.vertices.ahead());
+        all.extend(scene.arrays().ahead());
         all.extend(self.narrow.ahead(&self.last));
         scene.device.read_ahead(&all)
     }
@@ -136,7 +136,7 @@ impl<R: Precision> QueryMemory<R> {
         reruns: u64,
     ) -> Result<Found<'a>, Error> {
         let listed = self.narrow.gather(&counters)?;
-        let (front_dropped, seen) = (scene.broads[self.broad].phase.front_dropped(), scene.vertices.seen()?);
+        let (front_dropped, seen) = (scene.broads[self.broad].phase.front_dropped(), scene.arrays().seen()?);
         let is_start_checked = self.narrow.checks_start();
         let pairs = scene.candidates(self.is_of_instances).demand(&counters);
         Ok(Found { listed, counters, pairs, reruns, front_dropped, is_start_checked, seen })

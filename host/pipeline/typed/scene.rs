@@ -14,18 +14,19 @@ use crate::pipeline::instances::Instances;
 use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::narrow::{Exclusions, Features};
-use crate::pipeline::placing::{Moved, Placing, Whereabouts};
+use crate::pipeline::placing::{DeviceArrays, Moved, Placing, Whereabouts};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::purpose;
 use crate::pipeline::{Layout, QueryParts, SceneParts};
 use crate::query::{self, BoundingVolume, Query, QueryKind};
-use crate::scene::Body;
+use crate::scene::{Body, BodyKind, Pose};
 use nearmiss_kernels::abi::{
     BodyRecord, Counters, FilterArgs, Growth, LeftOutArgs, Pair, Point, Positions, Span, TraverseFlags,
     counter,
 };
 use nearmiss_kernels::entry::traverse_left_out;
 use nearmiss_kernels::math::Vec3;
+use std::sync::Arc;
 
 /// The choices that two queries must have in common to share a broad phase.
 #[derive(Clone, Copy, PartialEq)]
@@ -70,6 +71,9 @@ pub struct SceneMemory<R: Precision> {
     pub faces: Buffer<[u32; 3]>,
     pub vertices: Placing<R>,
     has_vertices: bool,
+    /// Whether queries may read bodies as instances whose poses only the device has.
+    has_instances: bool,
+    layout: Arc<Layout>,
     /// Pairs of bodies that are left out, as kernels read them; empty without such.
     left_out: Buffer<u32>,
     /// Pairs of features that are excluded.
@@ -99,11 +103,13 @@ impl<R: Precision> SceneMemory<R> {
     /// Device errors.
     pub fn new(device: Device, bodies: &[Body], parts: &SceneParts) -> Result<Self, Error> {
         let (empty, of_faces) = (Layout::without_bodies(), device.of(purpose::FACES));
-        let (layout, bodies) = if parts.has_vertices { (&*parts.layout, bodies) } else { (&empty, &[][..]) };
-        Ok(SceneMemory {
+        let (layout, placed) = if parts.has_vertices { (&*parts.layout, bodies) } else { (&empty, &[][..]) };
+        let mut scene = SceneMemory {
             faces: of_faces.upload(&layout.faces)?,
-            vertices: Placing::new(&device.of(purpose::VERTICES), layout, bodies, parts.has_ends)?,
+            vertices: Placing::new(&device.of(purpose::VERTICES), layout, placed, parts.has_ends)?,
             has_vertices: parts.has_vertices,
+            has_instances: parts.has_instances,
+            layout: parts.layout.clone(),
             left_out: device.of(purpose::LEFT_OUT).upload(&parts.layout.left_out)?,
             exclusions: Exclusions::new(&device, &parts.layout.excluded)?,
             instances: None,
@@ -119,7 +125,9 @@ impl<R: Precision> SceneMemory<R> {
             placing: Vec::new(),
             placings: 0,
             device,
-        })
+        };
+        scene.place_instances(bodies)?;
+        Ok(scene)
     }
 
     /// Makes room for so many candidates.
@@ -203,8 +211,34 @@ impl<R: Precision> SceneMemory<R> {
         if self.has_vertices {
             self.vertices.put(&self.device, bodies, moved)?;
         }
+        self.place_instances(bodies)
+    }
+
+    /// Places instances. It makes them if there are none and the caller's memory has a pose, which is
+    /// read now.
+    fn place_instances(&mut self, bodies: &[Body]) -> Result<(), Error> {
+        let is_lent = |body: &Body| body.kind() == BodyKind::Rigid && body.device_motion().is_some();
+        if self.instances.is_none() && self.has_instances && bodies.iter().any(is_lent) {
+            self.instances = Some(self.new_instances(bodies)?);
+        }
         let device = &self.device;
         self.instances.as_mut().map_or(Ok(()), |instances| instances.put(device, bodies))
+    }
+
+    /// Returns instances of the bodies. Poses that only the device has are those of its vertices.
+    fn new_instances(&self, bodies: &[Body]) -> Result<Instances, Error> {
+        let is_there = |body: &Body| {
+            body.kind() == BodyKind::Rigid && body.is_device_resident() && body.device_motion().is_none()
+        };
+        let found = if bodies.iter().any(is_there) {
+            let places = self.vertices.whereabouts()?;
+            let ends = places.ends.len();
+            let both = |own: &[Pose]| [own[0], own[ends - 1]];
+            places.poses.chunks_exact(ends).flat_map(both).collect()
+        } else {
+            Vec::new()
+        };
+        Instances::new(&self.device, bodies, &self.layout, &found)
     }
 
     /// Readies meshes and poses for a query of instances.
@@ -216,19 +250,20 @@ impl<R: Precision> SceneMemory<R> {
         bodies: &[Body],
         (layout, kind): (&Layout, QueryKind),
     ) -> Result<(), Error> {
-        let instances = match &mut self.instances {
-            Some(instances) => {
+        let mut instances = match self.instances.take() {
+            Some(mut instances) => {
                 // The host may have poses of a download, which no update named.
                 if instances.differ(bodies) {
                     instances.put(&self.device, bodies)?;
                 }
                 instances
             }
-            none => none.insert(Instances::new(&self.device, bodies, layout)?),
+            None => self.new_instances(bodies)?,
         };
         if kind.is_of_features() {
             instances.ready_motion(&self.device, (bodies, layout), kind.is_at_rest())?;
         }
+        let instances = self.instances.insert(instances);
         let deform = instances.deform();
         // Meshes that deform are refitted to vertices in the scene.
         if deform { self.ready(true) } else { Ok(()) }
@@ -275,17 +310,44 @@ impl<R: Precision> SceneMemory<R> {
         }
     }
 
-    /// Returns the positions of all bodies, of which the query of this layout may be one of instances.
+    /// Returns the positions of all bodies.
     ///
     /// # Errors
     /// Device errors.
-    pub fn whereabouts(&self, layout: Option<&Layout>) -> Result<Whereabouts, Error> {
-        let Some((own, layout)) = self.instances.as_ref().zip(layout).filter(|_| !self.has_vertices) else {
-            return self.vertices.whereabouts();
-        };
-        let end = |end: usize| Ok::<_, Error>(own.positions(layout, end)?.into_iter().map(|p| p.0).collect());
+    pub fn whereabouts(&self) -> Result<Whereabouts, Error> {
+        let Some(own) = self.only_instances() else { return self.vertices.whereabouts() };
+        let positions = |end: usize| own.positions(&self.layout, end);
+        let end = |end: usize| Ok::<_, Error>(positions(end)?.into_iter().map(|p| p.0).collect());
         let ends = vec![mesh::Positions::F64(end(0)?), mesh::Positions::F64(end(1)?)];
-        Ok(Whereabouts { looked_at: ends.len(), ends, poses: Vec::new(), seen: None })
+        let (poses, seen) = (own.arrays().poses()?, own.arrays().seen()?);
+        Ok(Whereabouts { looked_at: ends.len(), ends, poses, seen })
+    }
+
+    /// Returns the instances, if no vertices are placed.
+    fn only_instances(&self) -> Option<&Instances> {
+        self.instances.as_ref().filter(|_| !self.has_vertices)
+    }
+
+    /// Returns what was read from the caller's memory, and its checks.
+    pub fn arrays(&self) -> &DeviceArrays {
+        self.only_instances().map_or_else(|| self.vertices.arrays(), Instances::arrays)
+    }
+
+    /// Returns whether the last frame placed nothing, or only from device memory, so that a submission
+    /// can place it again.
+    pub fn is_repeatable(&self) -> bool {
+        !self.has_vertices || self.vertices.is_repeatable()
+    }
+
+    /// Places the bodies of the last frame again, from the same addresses.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn again(&mut self) -> Result<(), Error> {
+        if self.has_vertices {
+            self.vertices.again(&self.device)?;
+        }
+        self.instances.as_mut().map_or(Ok(()), |instances| instances.again(&self.device))
     }
 
     /// Calls a function with the broad phase of a query and its context.

@@ -86,7 +86,7 @@ pub fn not_prepared() -> Error {
 
 impl<R: Precision> Submits for TypedPipeline<R> {
     fn poses(&self) -> Result<Vec<Pose>, Error> {
-        self.scene.vertices.poses()
+        self.scene.arrays().poses()
     }
 
     fn prepare(&mut self, queries: &[usize], wanted: &DeviceExtras) -> Result<bool, Error> {
@@ -98,7 +98,7 @@ impl<R: Precision> Submits for TypedPipeline<R> {
                 return refused(why, "use another traversal, or do not submit");
             }
         }
-        if !self.scene.vertices.is_repeatable() {
+        if !self.scene.is_repeatable() {
             return refused(
                 "a submission cannot read positions of the host",
                 "give the positions of every moving body on the device",
@@ -229,9 +229,9 @@ impl<R: Precision> TypedPipeline<R> {
     fn enqueue(&mut self) -> Result<(), Error> {
         let Some(submission) = &mut self.submission else { return Ok(()) };
         let scene = &mut self.scene;
-        let seen = scene.vertices.seen_span();
+        let seen = scene.arrays().seen.span();
         let seen = if seen.is_empty() { submission.unseen.span() } else { seen };
-        scene.vertices.again(&scene.device)?;
+        scene.again()?;
         scene.is_submitting = true;
         let queries = &mut self.queries;
         let enqueued = submission.queries.iter_mut().try_for_each(|submitted| {
@@ -266,7 +266,9 @@ impl<R: Precision> QueryMemory<R> {
         submitted: &mut Submitted,
         seen: Span<u64>,
     ) -> Result<(), Error> {
-        scene.broads[self.broad].phase.set_growth(self.growth(scene.vertices.turns()));
+        scene.broads[self.broad]
+            .phase
+            .set_growth(self.growth(self.is_of_instances || scene.vertices.turns()));
         scene.device.beside(|| self.counters.clear())?;
         [Stage::Fit, Stage::Refit].into_iter().try_for_each(|stage| self.run(scene, stage))?;
         scene.device.join();

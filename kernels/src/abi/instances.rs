@@ -162,7 +162,7 @@ arguments! {
     BodiesArgs {
         /// Meshes and bodies; out: the frames of these bodies.
         tables: InstanceTables,
-        /// A pose for each body of the scene.
+        /// Two poses for each body of the scene: at the start and at the end.
         poses: Span<PoseRecord>,
         /// Bodies in order: the lower halves.
         order: Span<u64>,

@@ -43,7 +43,7 @@ const _: () = assert!(size_of::<MovingRelation>() == 160);
 arguments! {
     /// `fit_moving_bodies`: where bodies are at both ends, and their boxes around the step.
     MovingBodiesArgs {
-        /// Meshes, bodies, boxes; out: the frames at the start. Two poses a body.
+        /// Meshes, bodies, boxes; out: the frames at the start.
         of: BodiesArgs,
         /// Out: the frames at the end.
         ends: Span<InstanceFrame>,

@@ -21,11 +21,13 @@
 //! Cost     16 B a point in and 16 or 32 B out (f32), 4 B a thickness, 64 B a pose from cache. 50 operations a
 //!          vertex and end.
 
+pub mod poses;
+
 use crate::abi::{
     KEEPS_END, LENT, Lent, POSED, PlaceArgs, Point, PoseRecord, RESTING, Span, UPLOADED, VertexMotion, seen,
 };
 use crate::bvh::filter::holder;
-use crate::exec::{Block, Lane};
+use crate::exec::{Block, Lane, Shared};
 use crate::math::tolerance::POSE_UNIT;
 use crate::math::{Real, Vec3, rigid};
 
@@ -81,6 +83,53 @@ impl Seen {
             self.largest = self.largest.greater(x).greater(y).greater(z);
         }
     }
+
+    /// Adds a lane's checks to those of its block.
+    #[inline(always)]
+    fn tell<L: Lane>(&self, lane: &L, words: Shared<u64>) {
+        if self.invalid > 0 {
+            lane.shared_max(words, seen::INVALID, self.invalid.into());
+        }
+        if self.largest > 0.0 {
+            lane.shared_max(words, seen::LARGEST, self.largest.to_bits());
+        }
+    }
+}
+
+/// Words of a block for the checks of its lanes, all 0.
+#[inline(always)]
+fn nothing_seen<B: Block>(block: &mut B) -> Shared<u64> {
+    let (words, lanes) = (block.shared::<u64>(seen::COUNT), block.lanes());
+    block.phase(|lane| {
+        (lane.lane()..seen::COUNT).step_by(lanes as usize).for_each(|word| lane.put(words, word, 0))
+    });
+    words
+}
+
+/// Adds a block's checks to those of all.
+#[inline(always)]
+fn all_seen<B: Block>(block: &mut B, words: Shared<u64>, all: Span<u64>) {
+    let lanes = block.lanes();
+    block.phase(|lane| {
+        for word in (lane.lane()..seen::COUNT).step_by(lanes as usize) {
+            let most = lane.get(words, word);
+            if most > 0 {
+                lane.fetch_max(all, word, most);
+            }
+        }
+    });
+}
+
+/// A pose in the caller's memory, as it is there, and by its length: a translation, then a rotation.
+/// Also whether it is one.
+#[inline(always)]
+fn read<L: Lane>(lane: &L, lent: Span<Lent>, at: u32) -> (PoseRecord, PoseRecord, bool) {
+    let translation = row::<_, 3>(lane, &lane.read(lent, at), 0);
+    let rotation = row::<_, 4>(lane, &lane.read(lent, at + 1), 0);
+    let length = rigid::length(&rotation);
+    let found = PoseRecord { rotation, translation, pad: 0.0 };
+    let pose = PoseRecord { rotation: rotation.map(|q| q / length), ..found };
+    (found, pose, Real::abs(length - 1.0) <= POSE_UNIT)
 }
 
 /// Every vertex of the placed bodies.
@@ -88,11 +137,7 @@ pub fn place<R: Real, B: Block>(block: &mut B, args: &PlaceArgs<R>) {
     let still = args.vertices.moving.is_empty();
     let ends = if still { 1 } else { 2 };
     let stride = block.blocks() * block.lanes();
-    let words = block.shared::<u64>(seen::COUNT);
-    let lanes = block.lanes();
-    block.phase(|lane| {
-        (lane.lane()..seen::COUNT).step_by(lanes as usize).for_each(|word| lane.put(words, word, 0))
-    });
+    let words = nothing_seen(block);
     block.phase(|lane| {
         let mut seen = Seen { invalid: 0, largest: 0.0 };
         let mut i = lane.global();
@@ -117,17 +162,12 @@ pub fn place<R: Real, B: Block>(block: &mut B, args: &PlaceArgs<R>) {
                     placed(&pose, lane.read(args.rest, source))
                 }
                 _ => {
-                    let lent = placement.lent + 2 * end;
-                    let translation = row::<_, 3>(lane, &lane.read(args.lent, lent), 0);
-                    let rotation = row::<_, 4>(lane, &lane.read(args.lent, lent + 1), 0);
-                    let length = rigid::length(&rotation);
-                    let found = PoseRecord { rotation, translation, pad: 0.0 };
+                    let (found, pose, is_pose) = read(lane, args.lent, placement.lent + 2 * end);
                     if own == 0 {
                         lane.write(args.found, placement.pose + end, found);
                     }
-                    let pose = PoseRecord { rotation: rotation.map(|q| q / length), ..found };
                     let point = placed(&pose, lane.read(args.rest, source));
-                    seen.look(vertex, &point, Real::abs(length - 1.0) <= POSE_UNIT, args.most);
+                    seen.look(vertex, &point, is_pose, args.most);
                     point
                 }
             };
@@ -157,21 +197,9 @@ pub fn place<R: Real, B: Block>(block: &mut B, args: &PlaceArgs<R>) {
             }
             i = i.saturating_add(stride);
         }
-        if seen.invalid > 0 {
-            lane.shared_max(words, seen::INVALID, seen.invalid.into());
-        }
-        if seen.largest > 0.0 {
-            lane.shared_max(words, seen::LARGEST, seen.largest.to_bits());
-        }
+        seen.tell(lane, words);
     });
-    block.phase(|lane| {
-        for word in (lane.lane()..seen::COUNT).step_by(lanes as usize) {
-            let most = lane.get(words, word);
-            if most > 0 {
-                lane.fetch_max(args.seen, word, most);
-            }
-        }
-    });
+    all_seen(block, words, args.seen);
 }
 
 /// Bytes of shared memory of a block.

@@ -122,7 +122,8 @@ impl Groups {
         part: usize,
     ) -> Result<(), Error> {
         let own = &layout.trees[part];
-        let centres: Vec<[f64; 3]> = own.iter().map(|&body| instances.centre(body)).collect();
+        let all = instances.centres()?;
+        let centres: Vec<[f64; 3]> = own.iter().map(|&body| all[body]).collect();
         let order = along(&centres, |i| layout.records[own[i]].environment);
         let items: Vec<u64> = order.into_iter().map(|i| own[i] as u64).collect();
         self.order[part].write(&items)?;

@@ -306,7 +306,7 @@ mod tests {
         };
         let bodies = (0..80).map(body).collect::<Result<Vec<_>, _>>()?;
         let layout = Layout::new(&bodies, Query::discrete().kind());
-        let instances = Instances::new(&device, &bodies, &layout)?;
+        let instances = Instances::new(&device, &bodies, &layout, &[])?;
         let given = BroadContext::<f64> {
             device: &device,
             frames: Positions { still: Span::EMPTY, moving: Span::EMPTY, turns: Span::EMPTY },

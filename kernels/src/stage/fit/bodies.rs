@@ -24,7 +24,7 @@ pub fn bodies<B: Block>(block: &mut B, args: &BodiesArgs) {
     let (first, count) = (block.block() * block.lanes(), args.order.len() as u32);
     fit(block, &fitted(args), |lane, body| {
         let mesh = lane.read(args.tables.meshes, lane.read(args.tables.bodies, body).mesh);
-        let frame = frame(&lane.read(args.poses, body), &mesh);
+        let frame = frame(&lane.read(args.poses, 2 * body), &mesh);
         // The last body is there again behind it, and has one writer.
         if first + lane.lane() < count {
             lane.write(args.tables.frames, body, frame);
