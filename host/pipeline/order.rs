@@ -50,15 +50,15 @@ impl Ordered for NearHit {
     type Rank = entry::order_rank_near;
 }
 
-/// The rows in order, and the memory of the sort: 8 B a bin, 12 B a contact, and 8 B more a contact
+/// The rows in order, and the memory of the sort: 4 B a bin, 12 B a contact, and 8 B more a contact
 /// if a bin is long.
 pub struct Order<T: Ordered> {
     /// All rows, in order.
     pub rows: List<T::Row>,
     /// All contacts in the same order, for the caller's kernels; none unless prepared for them.
     contacts: Option<Buffer<T>>,
+    /// Counts of the bins, then their starts in the same place.
     counts: Buffer<u64>,
-    starts: Buffer<u32>,
     sums: Buffer<u32>,
     slots: Buffer<u32>,
     keys: [Buffer<u64>; 2],
@@ -71,7 +71,7 @@ pub struct Order<T: Ordered> {
     /// Words of a tile of bins.
     words: u32,
     levels: Levels,
-    /// Whether all counts are 0: they are after a frame that ended.
+    /// Whether the counts were cleared ahead of the next run.
     is_clear: bool,
 }
 
@@ -121,8 +121,12 @@ pub trait Ordering {
     /// # Errors
     /// Device errors.
     fn prepare(&mut self, device: &Device) -> Result<(), Error>;
-    /// Notes that launches failed: counts may be left over, and the next run clears them.
-    fn failed(&mut self);
+    /// Clears the counts ahead of the next run, which then need not. Each frame begins with it, as a
+    /// branch that ends before the run.
+    ///
+    /// # Errors
+    /// Device errors.
+    fn clear_ahead(&mut self) -> Result<(), Error>;
 }
 
 impl<T: Ordered> Ordering for Option<Order<T>> {
@@ -139,10 +143,8 @@ impl<T: Ordered> Ordering for Option<Order<T>> {
         self.as_mut().map_or(Ok(()), |order| order.prepare(device))
     }
 
-    fn failed(&mut self) {
-        if let Some(order) = self {
-            order.is_clear = false;
-        }
+    fn clear_ahead(&mut self) -> Result<(), Error> {
+        self.as_mut().map_or(Ok(()), Order::clear)
     }
 }
 
@@ -173,7 +175,7 @@ impl<T: Ordered> Order<T> {
         let order = device.of(purpose::ORDER);
         let most = u64::from(u32::MAX) / 2;
         if all > most {
-            let bytes = |bins: u64| 8 * bins;
+            let bytes = |bins: u64| 4 * bins;
             let what = "bins of contacts".into();
             return Err(Error::OutOfMemory { what, asked: bytes(all), given: bytes(most) });
         }
@@ -186,7 +188,6 @@ impl<T: Ordered> Order<T> {
             rows: List::new(device, "contacts in order", counter::ORDERED, capacity)?,
             contacts: None,
             counts: order.buffer(words as usize)?,
-            starts: order.buffer(2 * words as usize)?,
             sums: order.buffer(words.div_ceil(of_a_tile) as usize)?,
             slots: order.buffer(0)?,
             keys: [order.buffer(0)?, order.buffer(0)?],
@@ -241,16 +242,22 @@ impl<T: Ordered> Order<T> {
         Ok(())
     }
 
+    fn clear(&mut self) -> Result<(), Error> {
+        self.counts.clear()?;
+        self.is_clear = true;
+        Ok(())
+    }
+
     /// Orders one list or two. Entries beyond the capacity are counted and left out.
     ///
     /// # Errors
     /// Device errors.
     pub fn run(&mut self, device: &Device, given: &Unordered<T>, counters: Counters) -> Result<(), Error> {
         self.reserve(device)?;
-        if !self.is_clear {
+        // The last run left starts in the place of the counts.
+        if !std::mem::take(&mut self.is_clear) {
             self.counts.clear()?;
         }
-        self.is_clear = false;
         let contacts = self.contacts().filter(|_| given.is_submitted);
         let args = OrderArgs {
             first: given.first.output(counters),
@@ -259,7 +266,6 @@ impl<T: Ordered> Order<T> {
             contacts: contacts.map_or(Output::EMPTY, |span| counters.output(span, counter::ORDERED)),
             bins: Bins {
                 counts: self.counts.span(),
-                starts: self.starts.span(),
                 sums: self.sums.span(),
                 counters,
                 words: self.words,
@@ -281,7 +287,6 @@ impl<T: Ordered> Order<T> {
         launch::striding::<T::Count>(device, capacity, &args)?;
         launch::blocks::<entry::order_sums>(device, tiles, &args.bins)?;
         launch::blocks::<entry::order_starts>(device, tiles, &args.bins)?;
-        self.is_clear = true;
         launch::striding::<T::Place>(device, capacity, &args)?;
         let level = |level: u32| {
             let [keys, merged] = [level % 2, (level + 1) % 2].map(|at| self.keys[at as usize].span());

@@ -97,6 +97,9 @@ fn ordered<T: Ordered>(device: &Device, layout: &Layout, lists: [&[T]; 2], capac
         counters.write(&counts).expect("written");
         let (first, second) = (&lists[0], Some(&lists[1]));
         let given = Unordered { first, second, decided: 1, is_submitted: frames == 1 };
+        if frames == 1 {
+            order.clear().expect("cleared ahead");
+        }
         order.run(device, &given, counters.counters()).expect("no rule is broken");
         counts = counters.read().expect("read");
         frames += u32::from(!order.levels.grow(device, &counts).expect("levels"));
@@ -265,27 +268,52 @@ fn a_bin_beyond_the_merges_is_counted() {
     assert!(!order.levels.grow(&device, &counts).expect("levels"));
 }
 
-/// Bins that an earlier frame left would send keys elsewhere: the sanitizer notices it. A frame
-/// that ended early is known, and its bins are cleared.
+/// A bin takes 4 bytes, and there is one place more. Triangles that stand for elements double the
+/// bins.
+#[test]
+fn a_bin_takes_four_bytes() {
+    let device = machine(Mode::Engine, 32);
+    for count in [0, 1, 500, 20_001] {
+        let layout = layout(count);
+        let ends = *layout.starts.last().expect("an end");
+        let bytes = |order: &Order<Hit>| size_of::<u64>() * order.counts.len();
+        let order = Order::<Hit>::new(&device, &layout, 8).expect("memory");
+        let bins = (ends.vertex + ends.edge) as usize;
+        assert!((4 * (bins + 1)..=4 * (bins + 2)).contains(&bytes(&order)));
+        assert!(order.sums.len() <= MOST_TILES as usize);
+        let order = Order::<Hit>::new(&device, &with_elements(&layout), 8).expect("memory");
+        let bins = if ends.triangle == 0 { 0 } else { 2 * bins };
+        assert!((4 * (bins + 1)..=4 * (bins + 2)).contains(&bytes(&order)));
+    }
+}
+
+/// Bins that an earlier run left would send keys elsewhere: the sanitizer notices it. A run clears
+/// them, unless they were cleared ahead.
 #[test]
 fn bins_that_are_not_clear_are_noticed() {
     let (device, layout) = (machine(Mode::Sanitizer(Blocks::Forward), 32), layout(OF_A_BODY));
     let (mut order, mut counts) =
         (Order::<Pair>::new(&device, &layout, 8).expect("memory"), Counts::default());
     let mut list = List::new(&device, "contacts", counter::CONTACTS, 8).expect("memory");
-    list.put(&[Pair { a: 1, b: 2 }; 1], &mut counts).expect("written");
     let mut counters = FrameCounters::new(&device).expect("memory");
-    let mut run = |order: &mut Order<Pair>| {
+    let mut run = |order: &mut Order<Pair>, a: u32| {
+        list.put(&[Pair { a, b: 2 }; 1], &mut counts).expect("written");
         counters.write(&counts).expect("written");
         let given = Unordered { first: &list, second: None, decided: 0, is_submitted: false };
         order.run(&device, &given, counters.counters())
     };
-    run(&mut order).expect("no rule is broken");
+    run(&mut order, 1).expect("no rule is broken");
+    // Starts of that run are taken for counts.
+    order.is_clear = true;
+    assert!(run(&mut order, 900).is_err());
+    assert!(!order.is_clear);
+    run(&mut order, 900).expect("cleared first");
+    order.clear().expect("cleared ahead");
+    run(&mut order, 1).expect("no rule is broken");
     let dirty = vec![100 << 32 | 100; order.counts.len()];
     order.counts.write(&dirty).expect("written");
-    order.is_clear = false;
-    run(&mut order).expect("cleared first");
+    run(&mut order, 1).expect("cleared first");
     order.counts.write(&dirty).expect("written");
-    assert!(run(&mut order).is_err());
-    assert!(!order.is_clear || run(&mut order).is_ok());
+    order.is_clear = true;
+    assert!(run(&mut order, 1).is_err());
 }

@@ -84,11 +84,6 @@ impl<R: Precision> QueryMemory<R> {
         });
         self.replay = replay;
         self.launch_ms += start.elapsed().as_secs_f64() * 1e3;
-        if done.is_err()
-            && let Some(order) = self.narrow.ordering()
-        {
-            order.failed();
-        }
         done
     }
 
@@ -114,13 +109,14 @@ impl<R: Precision> QueryMemory<R> {
             pass(Mark::Refitted)?;
         }
         scene.device.join();
+        self.clear_order(scene)?;
         pass(Mark::Walks)?;
         self.run(scene, Stage::Traverse)?;
         pass(Mark::Walked)?;
         self.run(scene, Stage::Narrow)?;
         pass(Mark::Found)?;
-        self.run(scene, Stage::Order)?;
         scene.device.join();
+        self.run(scene, Stage::Order)?;
         pass(Mark::Ordered)
     }
 

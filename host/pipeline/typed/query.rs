@@ -200,6 +200,18 @@ impl<R: Precision> QueryMemory<R> {
         }
     }
 
+    /// Clears the bins of the order, at the same time as the walk and the narrow phase. Their end is
+    /// [`Device::join`](crate::device::Device::join).
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn clear_order(&mut self, scene: &SceneMemory<R>) -> Result<(), Error> {
+        if self.narrow.ordered().is_empty() {
+            return Ok(());
+        }
+        scene.device.beside(|| self.narrow.ordering().map_or(Ok(()), |order| order.clear_ahead()))
+    }
+
     /// Tests a sample, if its answer bounds the whole. Its counts are discarded: too little room
     /// gives a weaker bound, never a wrong one.
     fn sample(&mut self, scene: &mut SceneMemory<R>) -> Result<(), Error> {

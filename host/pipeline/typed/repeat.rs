@@ -67,6 +67,9 @@ impl<R: Precision> QueryMemory<R> {
             if matches!(stage, Stage::Traverse | Stage::Narrow | Stage::Order) {
                 self.counters.write(&counters)?;
             }
+            if stage == Stage::Order {
+                self.clear_order(scene)?;
+            }
             let start = scene.device.event()?;
             self.run(scene, stage)?;
             ms.push(start.to(&scene.device.event()?)?);

@@ -150,9 +150,6 @@ impl<R: Precision> Submits for TypedPipeline<R> {
         // SAFETY: it launches and clears; it keeps the memory that it holds.
         let done = unsafe { replay.run(&device, |_| self.enqueue()) };
         self.submission.iter_mut().for_each(|submission| submission.replay = std::mem::take(&mut replay));
-        if done.is_err() {
-            self.queries.iter_mut().filter_map(|own| own.narrow.ordering()).for_each(|order| order.failed());
-        }
         done
     }
 
@@ -272,10 +269,10 @@ impl<R: Precision> QueryMemory<R> {
         scene.device.beside(|| self.counters.clear())?;
         [Stage::Fit, Stage::Refit].into_iter().try_for_each(|stage| self.run(scene, stage))?;
         scene.device.join();
-        [Stage::Traverse, Stage::Narrow, Stage::Order]
-            .into_iter()
-            .try_for_each(|stage| self.run(scene, stage))?;
+        self.clear_order(scene)?;
+        [Stage::Traverse, Stage::Narrow].into_iter().try_for_each(|stage| self.run(scene, stage))?;
         scene.device.join();
+        self.run(scene, Stage::Order)?;
         let (lists, all) = (self.narrow.answer(&scene.features), self.counters.counters());
         if let (Some(extras), Some(rows)) = (&mut submitted.extras, self.narrow.rows(all)) {
             let ((frames, _, faces), edges) = (scene.positions_of(self), lists.edges);

@@ -186,15 +186,21 @@ impl Named for NearHit {
     }
 }
 
+impl Bins {
+    /// How many contacts are in the bins before each one: `order_starts` writes them over the counts.
+    #[inline(always)]
+    pub const fn starts(&self) -> Span<u32> {
+        self.counts.halves()
+    }
+}
+
 arguments! {
     /// `order_sums`, `order_starts`: contacts by their first feature, a bin a feature. Also part of
     /// [`OrderArgs`].
     Bins {
         /// How many contacts each bin has; two bins a word, the lower half first. One more than
-        /// there are features, at least.
+        /// there are features, at least. Out of `order_starts`: [`Bins::starts`].
         counts: Span<u64>,
-        /// Out: how many contacts are in the bins before each one.
-        starts: Span<u32>,
         /// Out: how many contacts each tile of bins has.
         sums: Span<u32>,
         /// Counters: the most contacts of a bin.

@@ -62,3 +62,11 @@ impl<T> Span<T> {
         Span { addr: self.addr + from * size_of::<T>() as u64, len, element: PhantomData }
     }
 }
+
+impl Span<u64> {
+    /// The same memory as words of half the size, the lower half of each first.
+    #[inline(always)]
+    pub const fn halves(&self) -> Span<u32> {
+        Span { addr: self.addr, len: 2 * self.len, element: PhantomData }
+    }
+}

@@ -7,7 +7,7 @@
 //! | kernel | does |
 //! | --- | --- |
 //! | [`count::count`] | counts the contacts of each bin; the count before is the contact's slot |
-//! | [`starts::sums`], [`starts::starts`] | sums of tiles, then the start of each bin |
+//! | [`starts::sums`], [`starts::starts`] | sums of tiles, then each bin's start over its count |
 //! | [`rank::place`] | a key of each contact to its bin's start plus its slot |
 //! | [`rank::merge`] | sorts runs of keys in long bins; only if there are any |
 //! | [`rank::rank`] | the rank of each key in its bin, then the row to its place |

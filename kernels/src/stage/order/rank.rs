@@ -27,7 +27,7 @@ pub fn place<T: Named, B: Block>(block: &mut B, args: &OrderArgs<T>) {
         while number < contacts.count {
             let contact = contacts.get(lane, args, number);
             let (Name { features, .. }, bin) = contacts.named(lane, args, number, &contact);
-            let start = lane.read(args.bins.starts, bin);
+            let start = lane.read(args.bins.starts(), bin);
             let slot = lane.read(args.slots, number);
             lane.write(args.keys, start + slot, (features[1] as u64) << 32 | number as u64);
             number = number.saturating_add(stride);
@@ -76,7 +76,7 @@ pub fn rank<T: Named, B: Block>(block: &mut B, args: &OrderArgs<T>) {
 /// The place of a key among those of its bin, or of the runs that are merged with its own.
 #[inline(always)]
 fn ranked<T: Named, L: Lane>(lane: &L, args: &OrderArgs<T>, bin: u32, at: u32, key: u64) -> u32 {
-    let [start, end] = [bin, bin + 1].map(|bin| lane.read(args.bins.starts, bin));
+    let [start, end] = [bin, bin + 1].map(|bin| lane.read(args.bins.starts(), bin));
     // The runs that are merged with its own, in 64 bits: their end may be far beyond the bin's.
     let merged = args.run + args.ways;
     let first = start + (((at - start) as u64) >> merged << merged) as u32;

@@ -1,12 +1,13 @@
 //! # Order, starts: counts of bins → start of each bin
 //! Paper    not in the paper.
 //! Launch   `sums`, then `starts`: a block a tile of bins.
-//! Reads    counts.   Writes   sums of tiles; starts; counts; the most contacts of a bin, if more
-//!          than [`RUN`].
-//! Before   counts are complete; starts have two places for each word of counts.
-//! After    starts\[b\] = Σ counts before b; then counts = 0, for the next frame.
-//! Room     fixed; cannot run out.
-//! Cost     4 B a bin in by each kernel, 8 B out, and 4 B for each tile before a block's own.
+//! Reads    counts.   Writes   sums of tiles; starts, over the counts; the most contacts of a bin,
+//!          if more than [`RUN`].
+//! Before   counts are complete.
+//! After    starts\[b\] = Σ counts before b. No count is left.
+//! Room     fixed; cannot run out. A block of `starts` reads and writes its own tile alone. A lane
+//!          writes the words that it has read, a phase later. Other tiles are in their sums.
+//! Cost     4 B a bin in by each kernel, 4 B out, and 4 B for each tile before a block's own.
 //!          Tiles are few, and more bins make longer tiles: no block waits for another.
 
 use super::RUN;
@@ -56,7 +57,7 @@ pub fn sums<B: Block>(block: &mut B, args: &Bins) {
     });
 }
 
-/// The start of each bin; clears the counts.
+/// The start of each bin, in the place of its count.
 pub fn starts<B: Block>(block: &mut B, args: &Bins) {
     let (number, lanes, tile) = (block.block(), block.lanes(), tile(block, args));
     let mut sums = block.slot(0u32);
@@ -92,10 +93,9 @@ pub fn starts<B: Block>(block: &mut B, args: &Bins) {
                 let word = of(lane.lane(), k);
                 if word < tile.end {
                     let [even, odd] = counts(words.of(lane)[k as usize]);
-                    lane.write(args.starts, 2 * word, start);
-                    lane.write(args.starts, 2 * word + 1, start + even);
-                    lane.write(args.counts, word, 0);
-                    start += even + odd;
+                    let next = start + even;
+                    lane.write(args.counts, word, (next as u64) << 32 | start as u64);
+                    start = next + odd;
                 }
             }
         });
