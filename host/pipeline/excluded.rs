@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::memory;
 use crate::scene::{Body, Scene};
 use nearmiss_emulator::Looks;
-use nearmiss_kernels::abi::RestPoint;
+use nearmiss_kernels::abi::{PartnerBits, RestPoint, RestReach, partner_key};
 use nearmiss_kernels::math::Vec3;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -20,8 +20,12 @@ const MOST: u64 = u32::MAX as u64;
 pub struct Excluded {
     /// Pairs of vertices: see `ExclusionTables::partners`.
     pub partners: Vec<u32>,
+    /// The bits of the partners of each vertex.
+    pub bits: Vec<PartnerBits>,
     /// All vertices in rest shapes.
     pub rest: Vec<RestPoint>,
+    /// The reach of each vertex there.
+    pub reaches: Vec<RestReach>,
     /// A bit for each triangle: whether it takes no part.
     pub faces: Vec<u32>,
 }
@@ -36,11 +40,9 @@ impl Excluded {
         if scene.excluded.is_empty() {
             return Ok(Excluded::default());
         }
-        Ok(Excluded {
-            partners: partners(scene, starts, looks)?,
-            rest: rest(scene, starts)?,
-            faces: faces(scene, starts),
-        })
+        let (partners, bits) = partners(scene, starts, looks)?;
+        let (rest, reaches) = rest(scene, starts)?;
+        Ok(Excluded { partners, bits, rest, reaches, faces: faces(scene, starts) })
     }
 
     /// Returns whether a triangle takes no part.
@@ -69,29 +71,46 @@ fn faces(scene: &Scene, starts: &[Offsets]) -> Vec<u32> {
     bits
 }
 
-fn rest(scene: &Scene, starts: &[Offsets]) -> Result<Vec<RestPoint>, Error> {
+fn rest(scene: &Scene, starts: &[Offsets]) -> Result<(Vec<RestPoint>, Vec<RestReach>), Error> {
     let excluded = scene.excluded.bodies.iter();
     let shapes = excluded.filter_map(|(id, own)| own.rest.as_ref().map(|rest| (id, rest)));
     let mut shapes = shapes.filter(|(_, rest)| rest.within > 0.0).peekable();
     if shapes.peek().is_none() {
-        return Ok(Vec::new());
+        return Ok(Default::default());
     }
     let vertices = starts.last().map_or(0, |end| end.vertex as usize);
-    memory::require("shapes at rest", (vertices * size_of::<RestPoint>()) as u64)?;
+    let each = size_of::<RestPoint>() + size_of::<RestReach>();
+    memory::require("shapes at rest", (vertices * each) as u64)?;
     let mut all = vec![RestPoint { at: Vec3([0.0; 3]), within: 0.0 }; vertices];
+    let mut reaches = vec![RestReach::NONE; vertices];
     for (id, shape) in shapes {
-        let own = &mut all[starts[id.index()].vertex as usize..];
-        for (point, at) in own.iter_mut().zip(shape.positions.to_f64()) {
+        let (first, positions) = (starts[id.index()].vertex as usize, shape.positions.to_f64());
+        for (point, &at) in all[first..].iter_mut().zip(&positions) {
             *point = RestPoint { at: Vec3(at), within: shape.within };
         }
+        let own = reaches_of(&positions, scene.bodies()[id.index()].elements(), shape.within);
+        reaches[first..][..own.len()].copy_from_slice(&own);
     }
-    Ok(all)
+    Ok((all, reaches))
 }
 
-fn partners(scene: &Scene, starts: &[Offsets], looks: &Looks) -> Result<Vec<u32>, Error> {
+/// Returns the reach of each vertex of a rest shape: all features of a vertex are of its triangles.
+fn reaches_of(positions: &[[f64; 3]], elements: &[[u32; 3]], within: f64) -> Vec<RestReach> {
+    let around: Vec<RestReach> = positions.iter().map(|&at| RestReach::around(at)).collect();
+    let mut extents: Vec<f64> = around.iter().zip(positions).map(|(own, &at)| own.extent(at)).collect();
+    for element in elements.iter().map(|element| element.map(|vertex| vertex as usize)) {
+        for vertex in element {
+            let reached = element.map(|other| around[vertex].extent(positions[other]));
+            extents[vertex] = reached.into_iter().fold(extents[vertex], f64::max);
+        }
+    }
+    around.into_iter().zip(extents).map(|(own, extent)| own.reaching(extent, within)).collect()
+}
+
+fn partners(scene: &Scene, starts: &[Offsets], looks: &Looks) -> Result<(Vec<u32>, Vec<PartnerBits>), Error> {
     let rings = |id| scene.excluded.bodies.get(&id).and_then(|own| own.ring);
     if scene.excluded.pairs.is_empty() && !scene.ids().any(|id| rings(id).is_some()) {
-        return Ok(Vec::new());
+        return Ok(Default::default());
     }
     let mut table = Table::new(starts.last().map_or(0, |end| end.vertex as u64), listed(scene, starts))?;
     for (body, range) in starts.windows(2).enumerate() {
@@ -115,7 +134,7 @@ fn partners(scene: &Scene, starts: &[Offsets], looks: &Looks) -> Result<Vec<u32>
             }
         }
     }
-    Ok(table.words)
+    Ok((table.words, table.bits))
 }
 
 /// All listed pairs of vertices in the numbers of the layout, each in both orders, ascending.
@@ -137,6 +156,8 @@ fn pieces(range: Range<u32>) -> impl Iterator<Item = Range<u32>> {
 /// The table of partners, as far as it is made.
 struct Table {
     words: Vec<u32>,
+    /// The bits of each vertex.
+    bits: Vec<PartnerBits>,
     /// Words for which there is memory.
     room: u64,
     /// Listed pairs of vertices that come later, and the place of the first.
@@ -146,8 +167,11 @@ struct Table {
 
 impl Table {
     fn new(vertices: u64, listed: Vec<[u32; 2]>) -> Result<Table, Error> {
-        let mut table = Table { words: Vec::new(), room: 0, listed, next: 0 };
+        let mut table = Table { words: Vec::new(), bits: Vec::new(), room: 0, listed, next: 0 };
         table.reserve(vertices + 1)?;
+        let bits = size_of::<PartnerBits>() as u64 * vertices;
+        memory::require("pairs of vertices that are excluded", bits)?;
+        table.bits.reserve_exact(vertices as usize);
         // The first range begins behind those of all vertices; each ends where the next begins.
         table.words.resize(vertices as usize + 1, vertices as u32 + 1);
         Ok(table)
@@ -165,16 +189,19 @@ impl Table {
         Ok(())
     }
 
-    /// Adds the partners of the next vertex: those that are around it, and those of the list.
+    /// Adds the keys of the partners of the next vertex, and its bits: partners around it, and those
+    /// of the list.
     fn add(&mut self, vertex: u32, around: impl Iterator<Item = u32>) -> Result<(), Error> {
         let first = self.words.len();
-        self.words.extend(around);
+        self.words.extend(around.map(partner_key));
         while let Some(&[_, other]) = self.listed.get(self.next).filter(|[own, _]| *own == vertex) {
-            self.words.push(other);
+            self.words.push(partner_key(other));
             self.next += 1;
         }
         self.reserve(self.words.len() as u64)?;
-        self.words[first..].sort_unstable();
+        let keys = &mut self.words[first..];
+        keys.sort_unstable();
+        self.bits.push(keys.iter().fold(PartnerBits::default(), |bits, &key| bits.with(key)));
         self.words[vertex as usize + 1] = self.words.len() as u32;
         Ok(())
     }
@@ -251,3 +278,6 @@ impl Search {
         self.found.clone()
     }
 }
+
+#[cfg(test)]
+mod tests;

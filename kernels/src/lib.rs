@@ -13,5 +13,7 @@ pub mod exec;
 pub mod math;
 pub mod prim;
 pub mod queue;
+#[cfg(test)]
+mod random;
 pub mod sort;
 pub mod stage;

@@ -9,14 +9,17 @@ use crate::pipeline::list::{GrowableOutput, List, Named, named};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::{launch, purpose};
 use nearmiss_kernels::abi::{
-    BodyRecord, Counter, ExcludeArgs, ExcludeTrianglesArgs, ExclusionTables, Output, Pair, RestPoint, Span,
+    BodyRecord, Counter, ExcludeArgs, ExcludeTrianglesArgs, ExclusionTables, Output, Pair, PartnerBits,
+    RestPoint, RestReach, Span,
 };
 use nearmiss_kernels::entry::{narrow_exclude, narrow_exclude_triangles};
 
 /// The tables of a scene on a device; without memory in a scene that excludes nothing.
 pub struct Exclusions {
     partners: Buffer<u32>,
+    bits: Buffer<PartnerBits>,
     rest: Buffer<RestPoint>,
+    reaches: Buffer<RestReach>,
     faces: Buffer<u32>,
 }
 
@@ -28,15 +31,23 @@ impl Exclusions {
     pub fn new(device: &Device, of: &Excluded) -> Result<Self, Error> {
         Ok(Exclusions {
             partners: device.of(purpose::EXCLUDED_VERTICES).upload(&of.partners)?,
+            bits: device.of(purpose::EXCLUDED_VERTICES).upload(&of.bits)?,
             rest: device.of(purpose::REST_SHAPES).upload(&of.rest)?,
+            reaches: device.of(purpose::REST_SHAPES).upload(&of.reaches)?,
             faces: device.of(purpose::EXCLUDED_FACES).upload(&of.faces)?,
         })
     }
 
     /// Returns the tables as kernels read them, with the records of the bodies.
     pub fn tables(&self, bodies: Span<BodyRecord>) -> ExclusionTables {
-        let Exclusions { partners, rest, faces } = self;
-        ExclusionTables { partners: partners.span(), rest: rest.span(), bodies, faces: faces.span() }
+        ExclusionTables {
+            partners: self.partners.span(),
+            bits: self.bits.span(),
+            rest: self.rest.span(),
+            reaches: self.reaches.span(),
+            bodies,
+            faces: self.faces.span(),
+        }
     }
 }
 

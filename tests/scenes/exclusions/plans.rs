@@ -45,11 +45,12 @@ fn a_launch_and_the_bytes_of_tables_are_of_scenes_with_exclusions() {
         let own = || Exclusions { ring: Some(1), rest: Some(rest.clone()), faces: vec![31] };
         let (more, bytes, some) = cost(own());
         assert_eq!(more, launches + behind, "{query:?}");
-        // 25 vertices: ranges, and each with itself.
-        assert_eq!(bytes, [4 * (25 + 1 + 25), 32 * 25, 4], "{query:?}");
+        // 25 vertices: ranges, each with itself, and bits; places and reaches.
+        let of_pairs = 4 * (25 + 1 + 25) + 16 * 25;
+        assert_eq!(bytes, [of_pairs, (32 + 16) * 25, 4], "{query:?}");
         assert!(some > 0);
         let (_, bytes, _) = cost(Exclusions { rest: None, faces: Vec::new(), ..own() });
-        assert_eq!(bytes, [4 * (25 + 1 + 25), 0, 0], "{query:?}");
+        assert_eq!(bytes, [of_pairs, 0, 0], "{query:?}");
         // A distance of 0 excludes nothing, so there is no table.
         let nothing = RestShape { within: 0.0, ..rest.clone() };
         assert_eq!(cost(Exclusions { rest: Some(nothing), ..Exclusions::default() }), (launches, [0; 3], 0));
