@@ -3,21 +3,7 @@ use super::*;
 use crate::math::Vec3;
 use crate::prim::cubic::Moving;
 use crate::prim::isolate::{Edges, Face};
-
-/// Numbers that look random: a multiplication and a shift (splitmix64).
-pub(super) struct Random(pub u64);
-
-impl Random {
-    pub fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let x = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let x = (x ^ x >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        x ^ x >> 31
-    }
-    pub fn below(&mut self, count: u64) -> u64 {
-        self.next() % count
-    }
-}
+use crate::random::Random;
 
 /// Every form of a pair.
 pub(super) fn forms(is_face: bool) -> impl Iterator<Item = Form> {

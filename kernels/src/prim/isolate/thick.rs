@@ -297,31 +297,21 @@ mod tests {
     use super::super::{Edges, Face};
     use super::*;
     use crate::prim::cubic::Moving;
+    use crate::random::Random;
 
-    /// Numbers in [-1, 1), by xorshift.
-    struct Numbers(u64);
-
-    impl Numbers {
-        fn next(&mut self) -> f64 {
-            self.0 ^= self.0 << 13;
-            self.0 ^= self.0 >> 7;
-            self.0 ^= self.0 << 17;
-            (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        }
-        fn point(&mut self) -> Vec3<f64> {
-            Vec3([self.next(), self.next(), self.next()])
-        }
+    fn point(numbers: &mut Random) -> Vec3<f64> {
+        Vec3([numbers.signed(), numbers.signed(), numbers.signed()])
     }
 
     /// A pair, in both precisions, whose features pass each other, and the radii of its vertices.
-    fn pair(numbers: &mut Numbers, is_face: bool, p: &Params) -> (Pair<f32, 4>, Pair<f64, 4>, [f64; 4]) {
-        let way = numbers.point() * 2.0;
+    fn pair(numbers: &mut Random, is_face: bool, p: &Params) -> (Pair<f32, 4>, Pair<f64, 4>, [f64; 4]) {
+        let way = point(numbers) * 2.0;
         let mut vertex = |by: f64| {
-            let t0 = numbers.point();
-            Moving { t0, t1: t0 + way * by + numbers.point() * 0.25 }
+            let t0 = point(numbers);
+            Moving { t0, t1: t0 + way * by + point(numbers) * 0.25 }
         };
         let [a, b, c, d] = [vertex(1.0), vertex(if is_face { 0.0 } else { 1.0 }), vertex(0.0), vertex(0.0)];
-        let [ra, rb, rc, rd] = core::array::from_fn(|_| 0.1 + 0.09 * numbers.next());
+        let [ra, rb, rc, rd] = core::array::from_fn(|_| 0.1 + 0.09 * numbers.signed());
         if is_face {
             let (single, double) =
                 (Face::new(a, [b, c, d], p).of_four(), Face::new(a, [b, c, d], p).of_four());
@@ -360,7 +350,7 @@ mod tests {
 
     #[test]
     fn what_the_largest_radius_parts_or_proves_is_never_within() {
-        let (mut numbers, mut seen) = (Numbers(0x2545_f491_4f6c_dd1d), [0; 4]);
+        let (mut numbers, mut seen) = (Random(0x2545_f491_4f6c_dd1d), [0; 4]);
         let p = Params { min_separation: 0.01, ..Params::new(1e-4) };
         for i in 0..3000 {
             let (single, double, radii) = pair(&mut numbers, i % 2 == 0, &p);

@@ -331,35 +331,24 @@ fn part(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Numbers in [0, 1), by xorshift.
-    struct Numbers(u64);
-
-    impl Numbers {
-        fn next(&mut self) -> f64 {
-            self.0 ^= self.0 << 13;
-            self.0 ^= self.0 >> 7;
-            self.0 ^= self.0 << 17;
-            (self.0 >> 11) as f64 / (1u64 << 53) as f64
-        }
-    }
+    use crate::random::Random;
 
     /// Corners in general position, in a plane, on a line, or tiny.
-    fn corners(numbers: &mut Numbers, family: u32) -> [Vec3<f64>; 4] {
+    fn corners(numbers: &mut Random, family: u32) -> [Vec3<f64>; 4] {
         let [x, y, z] = [[1.0; 3], [1.0, 1.0, 0.0], [1.0, 0.0, 0.0], [1e-200; 3]][family as usize % 4];
-        core::array::from_fn(|_| Vec3([x, y, z].map(|size| numbers.next() * size)))
+        core::array::from_fn(|_| Vec3([x, y, z].map(|size| numbers.part() * size)))
     }
 
     /// At the border, by few roundings: there neither test of corners holds.
     fn at_border<const TRIANGLE: bool>() -> u32 {
-        let (mut numbers, mut open) = (Numbers(0x9e37_79b9_7f4a_7c15), 0);
+        let (mut numbers, mut open) = (Random(0x9e37_79b9_7f4a_7c15), 0);
         for i in 0..4000 {
             let at = corners(&mut numbers, i);
             let size = if i % 4 == 3 { 1e-200 } else { 1.0 };
-            let (a, b) = (numbers.next() * 0.25 * size, numbers.next() * 0.25 * size);
+            let (a, b) = (numbers.part() * 0.25 * size, numbers.part() * 0.25 * size);
             let radii = if TRIANGLE { [a, b, b, b] } else { [a, a, b, b] };
             let shortest = super::super::distance::<f64, TRIANGLE>(at).0;
-            let off = (numbers.next() - 0.5) * 2e-14 * size;
+            let off = (numbers.part() - 0.5) * 2e-14 * size;
             let distance = (shortest - (a + b) + off).greater(0.0);
             let pair = Measured::<TRIANGLE>::of(at, radii, distance);
             let said = pair.by_corners();
@@ -380,12 +369,12 @@ mod tests {
 
     #[test]
     fn both_parts_together_are_the_whole() {
-        let (mut numbers, mut seen) = (Numbers(7), [0; 3]);
+        let (mut numbers, mut seen) = (Random(7), [0; 3]);
         for i in 0..4000 {
             let at = corners(&mut numbers, i);
             let size = if i % 4 == 3 { 1e-200 } else { 1.0 };
-            let radii = core::array::from_fn(|_| numbers.next() * 0.25 * size);
-            let distance = numbers.next() * 0.25 * size;
+            let radii = core::array::from_fn(|_| numbers.part() * 0.25 * size);
+            let distance = numbers.part() * 0.25 * size;
             let (kind, wanted) = match by_corners::<f64, false>(at, radii, distance) {
                 ByCorners::Beyond => (0, None),
                 ByCorners::Within(near) => (1, Some(near)),

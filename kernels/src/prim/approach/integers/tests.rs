@@ -1,6 +1,7 @@
 use super::*;
 use crate::prim::approach::forms::{end, start};
-use crate::prim::approach::tests::{Random, forms};
+use crate::prim::approach::tests::forms;
+use crate::random::Random;
 
 limbs! { Widest, 64, 64, 64, 64, 64, 64 }
 // The fewest limbs for pairs of 286 bits, and one less of each kind.
