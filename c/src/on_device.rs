@@ -22,6 +22,8 @@ pub enum NearmissEntries {
     NEARMISS_NEAR_PAIRS = 2,
     /// `NearmissDeviceNearest`: two triangles, their distance and nearest points.
     NEARMISS_NEAREST = 3,
+    /// `NearmissDevicePair`: two bodies that share a point, by their places in the scene, in no order.
+    NEARMISS_BODY_PAIRS = 4,
 }
 
 /// A list in memory of the device.
@@ -64,10 +66,10 @@ pub struct NearmissDeviceAnswer {
     pub start_count: usize,
 }
 
-/// Two triangles, in memory of the device.
+/// Two triangles, or two bodies, in memory of the device.
 #[repr(C)]
 pub struct NearmissDevicePair {
-    /// The triangles.
+    /// The triangles, or the bodies.
     pub triangles: [u32; 2],
 }
 
@@ -180,6 +182,7 @@ impl NearmissDetector {
             Entries::Contacts => NearmissEntries::NEARMISS_CONTACTS,
             Entries::NearPairs => NearmissEntries::NEARMISS_NEAR_PAIRS,
             Entries::Nearest => NearmissEntries::NEARMISS_NEAREST,
+            Entries::BodyPairs => NearmissEntries::NEARMISS_BODY_PAIRS,
             other => return Err(Error::Bug { what: format!("entries {other:?} without a name in C") }),
         };
         let mut both = [NearmissDeviceList::default(); 2];

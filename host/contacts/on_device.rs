@@ -18,8 +18,12 @@ pub enum Entries {
     /// [`NearHit`]: a vertex and an [element](crate::Body::elements), or two edges, their squared
     /// distance and nearest points.
     NearPairs,
-    /// [`NearestHit`]: two triangles, their distance and nearest points.
+    /// [`NearestHit`]: two triangles, their distance and nearest points. Distances of bodies have
+    /// an entry for each pair of bodies, in no order.
     Nearest,
+    /// [`Pair`]: two bodies that share a point, by their places in the scene, the smaller first, in no
+    /// order. [`BodyPairs::first`](crate::BodyPairs::first) may leave more here than it wants.
+    BodyPairs,
 }
 
 /// List in device memory.

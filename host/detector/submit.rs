@@ -60,25 +60,12 @@ pub(crate) fn check_submission(queries: &[Query]) -> Result<(), Error> {
             });
         }
     }
-    queries.iter().try_for_each(Query::check)?;
-    queries.iter().try_for_each(without_bodies)
+    queries.iter().try_for_each(Query::check)
 }
 
 /// Motions from memory of the caller.
 fn on_device<'a>(motions: &[(BodyId, DeviceMotion)]) -> Vec<(BodyId, Motion<'a>)> {
     motions.iter().map(|&(id, motion)| (id, Motion::OnDevice(motion))).collect()
-}
-
-/// Refuses a query of pairs of bodies: its rows are made on the host.
-fn without_bodies(query: &Query) -> Result<(), Error> {
-    let kind = query.kind();
-    if !kind.is_of_bodies() {
-        return Ok(());
-    }
-    Err(Error::InvalidArgument {
-        what: format!("a {kind} query cannot be submitted"),
-        advice: "use `Detector::query`, which waits for the answer".into(),
-    })
 }
 
 impl Detector {

@@ -100,8 +100,9 @@ pub fn on_gpu(
     Ok(BorrowedRows { rows: rows(&shape, width, what)?, held })
 }
 
-/// Points in the host's memory, which the CPU's kernels read where they lie; none where they are not laid out for that.
-pub fn on_cpu(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Option<BorrowedRows>> {
+/// Rows of `width` numbers in the host's memory, which the CPU's kernels read where they lie; none where they are not
+/// laid out for that.
+pub fn on_cpu(object: &Bound<'_, PyAny>, (width, what): (usize, &str)) -> PyResult<Option<BorrowedRows>> {
     let array = if let Ok(array) = object.cast::<PyUntypedArray>() {
         array.clone()
     } else if object.hasattr("__dlpack__")? {
@@ -114,8 +115,11 @@ pub fn on_cpu(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Option<Borrowed
     }
     let size = array.dtype().itemsize() as isize;
     let (shape, strides) = (array.shape(), array.strides());
-    let fits =
-        shape.len() == 2 && shape[1] == 3 && strides[1] == size && strides[0] > 0 && strides[0] % size == 0;
+    let fits = shape.len() == 2
+        && shape[1] == width
+        && strides[1] == size
+        && strides[0] > 0
+        && strides[0] % size == 0;
     if !fits || shape[0] == 0 {
         return Ok(None);
     }
@@ -134,7 +138,7 @@ pub fn on_cpu(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Option<Borrowed
         return Ok(None);
     }
     Ok(Some(BorrowedRows {
-        rows: rows(&shape, 3, what)?,
+        rows: rows(&shape, width as i64, what)?,
         held: Held::Object { _array: array.into_any().unbind() },
     }))
 }

@@ -205,7 +205,7 @@ fn end(object: &Bound<'_, PyAny>, Of { reader, what, most, .. }: Of<'_>) -> PyRe
     }
     if reader.in_place
         && !reader.is_gpu()
-        && let Some(rows) = on_cpu(object, what)?
+        && let Some(rows) = on_cpu(object, (3, what))?
     {
         return Ok(End::Borrowed(rows));
     }

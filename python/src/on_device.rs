@@ -198,6 +198,8 @@ const COUNT: Dtype = Dtype { code: INT, bits: 64, lanes: 1 };
 const STATE: Dtype = Dtype { code: UINT, bits: 32, lanes: 1 };
 const REAL: Dtype = Dtype { code: FLOAT, bits: 64, lanes: 1 };
 
+/// Columns of bodies that share a point.
+const BODY_PAIRS: &[Column] = &[("bodies", 0, INDEX, &[2])];
 const TRIANGLE_PAIRS: &[Column] = &[("triangles", 0, INDEX, &[2])];
 
 const CONTACTS: &[Column] = &[
@@ -237,6 +239,7 @@ fn columns(entries: Entries) -> (u64, &'static [Column]) {
         Entries::TrianglePairs => (8, TRIANGLE_PAIRS),
         Entries::Contacts => (32, CONTACTS),
         Entries::NearPairs => (32, NEAR_PAIRS),
+        Entries::BodyPairs => (8, BODY_PAIRS),
         _ => (96, NEAREST_TRIANGLES),
     }
 }
@@ -283,13 +286,14 @@ impl DeviceAnswer {
 
 #[pymethods]
 impl DeviceAnswer {
-    /// Kind of rows: "triangle pairs", "contacts", "near pairs" or "nearest triangles".
+    /// Kind of rows: "triangle pairs", "contacts", "near pairs", "nearest triangles" or "body pairs".
     #[getter]
     fn entries(&self) -> &'static str {
         match self.answer.entries {
             Entries::TrianglePairs => "triangle pairs",
             Entries::Contacts => "contacts",
             Entries::NearPairs => "near pairs",
+            Entries::BodyPairs => "body pairs",
             _ => "nearest triangles",
         }
     }
@@ -303,7 +307,9 @@ impl DeviceAnswer {
     ///   uint32: 1 contact, 2 undecided, 4 added if the iterations ended.
     /// - Near pairs: feature_a, feature_b, squared_distances (room,) float64, at (room, 2) float64:
     ///   the weights of the face's corners 1 and 2, or the place on each edge.
-    /// - Nearest triangles: triangles, distances, at (room, 2, 2), points (room, 2, 3).
+    /// - Nearest triangles: triangles, distances, at (room, 2, 2), points (room, 2, 3). One row, or a
+    ///   row for each pair of bodies in no order.
+    /// - Body pairs: bodies (room, 2) int32, in no order.
     #[getter]
     fn lists<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let (bytes, columns) = columns(self.answer.entries);

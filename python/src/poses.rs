@@ -1,12 +1,13 @@
 //! Poses of many bodies in arrays.
 
 use crate::asked::Does;
-use crate::borrowed::{BorrowedRows, Held, is_on_gpu, on_gpu};
+use crate::borrowed::{BorrowedRows, Held, is_on_gpu, on_cpu, on_gpu};
 use crate::detector::Detector;
 use crate::errors::{choice, raised};
 use crate::host::doubles;
 use crate::key::{self, Key};
 use nearmiss::Device;
+use nearmiss::contacts::DeviceExtras;
 use nearmiss::scene::Poses;
 use pyo3::prelude::*;
 
@@ -17,11 +18,13 @@ pub enum Columns {
 }
 
 impl Columns {
-    /// Two arrays; `which` is the beginning of their names.
+    /// Two arrays; `which` is the beginning of their names. With `stays` they are read in place, also
+    /// those of the host.
     fn of(
         positions: &Bound<'_, PyAny>,
         quaternions: &Bound<'_, PyAny>,
         (which, device): (&str, &Device),
+        stays: bool,
     ) -> PyResult<Columns> {
         let (p, q) = (format!("{which}positions"), format!("{which}quaternions"));
         match (is_on_gpu(positions), is_on_gpu(quaternions)) {
@@ -29,6 +32,19 @@ impl Columns {
                 on_gpu(positions, &[device], (3, &p))?,
                 on_gpu(quaternions, &[device], (4, &q))?,
             )),
+            (false, false) if stays => {
+                let in_place = |array, width, name: &str| {
+                    let rows = if device.is_gpu() { None } else { on_cpu(array, (width, name))? };
+                    rows.ok_or_else(|| {
+                        choice(
+                            format!("{name} cannot be read in place"),
+                            "give packed rows of single or double precision in the detector's memory: of its \
+                             GPU, or numpy arrays for a CPU",
+                        )
+                    })
+                };
+                Ok(Columns::Borrowed(in_place(positions, 3, &p)?, in_place(quaternions, 4, &q)?))
+            }
             (false, false) => Ok(Columns::Here(doubles(positions, &p)?, doubles(quaternions, &q)?)),
             _ => Err(choice(
                 format!("{p} and {q} are in different memories"),
@@ -55,9 +71,15 @@ impl Columns {
 /// Arrays of both ends: positions and quaternions of each.
 pub type Ends<'a, 'py> = [[Option<&'a Bound<'py, PyAny>>; 2]; 2];
 
-impl Detector {
-    /// Moves many bodies by arrays.
-    pub fn move_by_arrays(&self, py: Python<'_>, ids: &Bound<'_, PyAny>, ends: Ends<'_, '_>) -> PyResult<()> {
+/// Bodies, their poses, and those at the end of a step.
+struct Many {
+    keys: Vec<Key>,
+    start: Columns,
+    end: Option<Columns>,
+}
+
+impl Many {
+    fn of(device: &Device, ids: &Bound<'_, PyAny>, ends: Ends<'_, '_>, stays: bool) -> PyResult<Many> {
         let keys = ids.try_iter().map_err(|_| {
             choice(
                 format!("ids must be a list of bodies, got {}", ids.get_type()),
@@ -65,13 +87,12 @@ impl Detector {
             )
         })?;
         let keys = keys.map(|key| Key::of(&key?, "ids")).collect::<PyResult<Vec<_>>>()?;
-        let device = &self.device.get().device;
         let columns = |[positions, quaternions]: [Option<&Bound<'_, PyAny>>; 2], which: &str| match (
             positions,
             quaternions,
         ) {
             (Some(positions), Some(quaternions)) => {
-                Columns::of(positions, quaternions, (which, device)).map(Some)
+                Columns::of(positions, quaternions, (which, device), stays).map(Some)
             }
             (None, None) => Ok(None),
             (given, _) => {
@@ -85,17 +106,50 @@ impl Detector {
         let Some(start) = start else {
             return Err(choice("poses are missing", "give positions and quaternions"));
         };
+        Ok(Many { keys, start, end })
+    }
+
+    fn held(self) -> Vec<Held> {
+        [Some(self.start), self.end].into_iter().flatten().flat_map(Columns::held).collect()
+    }
+}
+
+impl Detector {
+    /// Moves many bodies by arrays.
+    pub fn move_by_arrays(&self, py: Python<'_>, ids: &Bound<'_, PyAny>, ends: Ends<'_, '_>) -> PyResult<()> {
+        let many = Many::of(&self.device.get().device, ids, ends, false)?;
         let (done, unread) = self.work(py, |one| {
             one.count(Does::Moves);
             let detector = &mut one.detector;
-            let done = key::bodies(detector.scene(), &keys).and_then(|ids| match &end {
-                None => detector.update_poses(&ids, start.poses()),
-                Some(end) => detector.update_pose_steps(&ids, start.poses(), end.poses()),
+            let done = key::bodies(detector.scene(), &many.keys).and_then(|ids| match &many.end {
+                None => detector.update_poses(&ids, many.start.poses()),
+                Some(end) => detector.update_pose_steps(&ids, many.start.poses(), end.poses()),
             });
-            let held = [Some(start), end].into_iter().flatten().flat_map(Columns::held).collect();
-            let unread = one.read(held, false);
+            let unread = one.read(many.held(), false);
             (done, unread)
         })?;
+        drop(unread);
+        done.map_err(raised)
+    }
+
+    /// Prepares submissions of queries, with bodies that move by arrays.
+    pub fn prepared_by_arrays(
+        &self,
+        py: Python<'_>,
+        (ids, ends): (&Bound<'_, PyAny>, Ends<'_, '_>),
+        queries: &[nearmiss::Query],
+        extras: &DeviceExtras,
+    ) -> PyResult<()> {
+        let many = Many::of(&self.device.get().device, ids, ends, true)?;
+        let (start, end) = (many.start.poses(), many.end.as_ref().map(Columns::poses));
+        let given = self.look(py, |detector| {
+            let ids = key::bodies(detector.scene(), &many.keys)?;
+            detector.device_motions(&ids, start, end)
+        })?;
+        let given = given.map_err(raised)?;
+        let held = many.held();
+        let (done, unread) = self
+            .work(py, |one| one.prepare(held, |detector| detector.prepare_with(&given, queries, extras)))?;
         drop(unread);
         done.map_err(raised)
     }

@@ -35,6 +35,36 @@ impl Detector {
         self.prepared(py, inputs, &queries_of(queries)?, &extras)
     }
 
+    /// Prepare submissions of many rigid bodies that move by arrays of poses, a row a body.
+    ///
+    /// Other bodies rest where they are.
+    ///
+    /// - `ids`, `positions`, `quaternions`, `end_positions`, `end_quaternions`: as of `update_poses`,
+    ///   arrays that stay where they are: of the GPU, or packed numpy arrays on a CPU. Write new poses into
+    ///   them. They are held while prepared.
+    /// - `queries`, `geometry`, `least_by_vertex`, `grouped`: as of `prepare`.
+    #[pyo3(signature = (
+        ids, positions, quaternions, queries, *, end_positions = None, end_quaternions = None,
+        geometry = false, least_by_vertex = false, grouped = None
+    ))]
+    #[allow(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn prepare_poses(
+        &self,
+        ids: &Bound<'_, PyAny>,
+        positions: &Bound<'_, PyAny>,
+        quaternions: &Bound<'_, PyAny>,
+        queries: &Bound<'_, PyAny>,
+        end_positions: Option<&Bound<'_, PyAny>>,
+        end_quaternions: Option<&Bound<'_, PyAny>>,
+        geometry: bool,
+        least_by_vertex: bool,
+        grouped: Option<Vec<String>>,
+    ) -> PyResult<()> {
+        let extras = extras_of(geometry, least_by_vertex, grouped)?;
+        let ends = [[Some(positions), Some(quaternions)], [end_positions, end_quaternions]];
+        self.prepared_by_arrays(ids.py(), (ids, ends), &queries_of(queries)?, &extras)
+    }
+
     /// Whether `submit` may be called, and a graph that recorded it launched again.
     #[getter]
     fn is_prepared(&self, py: Python<'_>) -> PyResult<bool> {

@@ -5,6 +5,7 @@ mod bounds;
 mod bvtt;
 mod direction;
 mod emulator;
+mod exclude;
 mod isolate;
 mod limits;
 mod pairs;

@@ -2,14 +2,14 @@
 
 use super::*;
 use crate::pipeline::layout::Layout;
-use crate::query::QueryKind;
+use crate::query::Query;
 use crate::samples;
 use crate::scene::{Exclusions, RestShape};
 
 /// Returns a scene of two sheets, and its tables: a ring of the first, some pairs of both.
 fn tables(ring: u32, pairs: &[[u32; 2]]) -> (Scene, Excluded) {
     let bodies = vec![samples::sheet(6), samples::sheet(5)];
-    let layout = Layout::new(&bodies, QueryKind::Near);
+    let layout = Layout::new(&bodies, Query::near(0.1).kind());
     let mut scene = Scene::new();
     let ids: Vec<_> = bodies.into_iter().map(|body| scene.add(body)).collect();
     let rest =

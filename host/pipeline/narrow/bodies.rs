@@ -146,11 +146,11 @@ impl<R: Precision> Narrow<R> for BodiesNarrow {
         })
     }
 
-    /// Its rows as entries without an order. Submissions, which alone read this, refuse the query.
+    /// Its rows as entries without an order.
     fn answer(&self, _: &Features) -> AnswerLists {
         let (entries, list, counter) = match &self.rows {
             Rows::Meeting(list, _) => {
-                (Entries::TrianglePairs, (list.entries().addr(), list.capacity()), list.counter())
+                (Entries::BodyPairs, (list.entries().addr(), list.capacity()), list.counter())
             }
             Rows::Nearest(list) => {
                 (Entries::Nearest, (list.entries().addr(), list.capacity()), list.counter())

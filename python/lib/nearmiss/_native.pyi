@@ -948,7 +948,7 @@ class DeviceAnswer:
     """
 
     @property
-    def entries(self) -> Literal["triangle pairs", "contacts", "near pairs", "nearest triangles"]:
+    def entries(self) -> Literal["triangle pairs", "contacts", "near pairs", "nearest triangles", "body pairs"]:
         """Kind of rows: "triangle pairs", "contacts", "near pairs" or "nearest triangles"."""
 
     @property
@@ -1250,6 +1250,21 @@ class Detector:
         - `geometry`, `least_by_vertex`, `grouped`: parts of the answers that submissions also make on
           the device. `on_device` has them. `grouped` has "vertex", "edge", "face" or "corner".
         """
+
+    def prepare_poses(
+        self,
+        ids: Iterable[Key],
+        positions: Array,
+        quaternions: Array,
+        queries: Iterable[Query[Any]],
+        *,
+        end_positions: Array = None,
+        end_quaternions: Array = None,
+        geometry: bool = False,
+        least_by_vertex: bool = False,
+        grouped: Sequence[Literal["vertex", "edge", "face", "corner"]] | None = None,
+    ) -> None:
+        """"""
 
     @property
     def is_prepared(self) -> bool:

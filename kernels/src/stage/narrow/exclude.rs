@@ -144,7 +144,7 @@ fn has_partner<L: Lane, const N: usize>(
 /// higher bit a key behind it. So all keys of this bit have places from the number of lower bits on.
 /// The last such place is farther by the number of keys beyond one a bit.
 #[inline(always)]
-fn is_listed(bits: PartnerBits, [first, end]: [u32; 2], key: u32, word: impl Fn(u32) -> u32) -> bool {
+pub fn is_listed(bits: PartnerBits, [first, end]: [u32; 2], key: u32, word: impl Fn(u32) -> u32) -> bool {
     let mut at = first + bits.before(key);
     let last = at + (end - first - bits.count());
     if last - at >= FEW {
@@ -207,6 +207,3 @@ fn bounds<const N: usize>(points: &[Vec3<f64>; N]) -> [Vec3<f64>; 2] {
     }
     [low, high]
 }
-
-#[cfg(test)]
-mod tests;
