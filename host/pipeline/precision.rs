@@ -79,7 +79,7 @@ pub trait Precision: Real + Send {
     type GeometryOfHits: Entry<Args = AnswerGeometryArgs<Self, Hit>>;
     /// Geometry of near pairs.
     type GeometryOfNear: Entry<Args = AnswerGeometryArgs<Self, NearHit>>;
-    /// Pairs that are near at the start.
+    /// Pairs that may be near at the start.
     type Approach: Entry<Args = ThickRungArgs<Self>>;
     /// Those that come nearer than at the start, by bounds of errors.
     type ApproachSigns: Entry<Args = ThickRungArgs<Self>>;

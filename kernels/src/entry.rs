@@ -207,8 +207,8 @@ kernels! {
     narrow_part_f64: abreast::part::<f64, B>, [ThickRungArgs<f64>], RUNG, abreast::shared_bytes(RUNG);
     narrow_separate_thick_f32: separate::thick::<f32, B>, [ThickRungArgs<f32>], RUNG, separate::shared_bytes(RUNG);
     narrow_separate_thick_f64: separate::thick::<f64, B>, [ThickRungArgs<f64>], RUNG, separate::shared_bytes(RUNG);
-    narrow_approach_f32: approach::approach::<f32, B>, [ThickRungArgs<f32>], NARROW, 0;
-    narrow_approach_f64: approach::approach::<f64, B>, [ThickRungArgs<f64>], NARROW, 0;
+    narrow_approach_f32: approach::approach::<f32, B>, [ThickRungArgs<f32>], RUNG, 0, registers = 64;
+    narrow_approach_f64: approach::approach::<f64, B>, [ThickRungArgs<f64>], RUNG, 0;
     narrow_approach_signs_f32: approach::signs::<f32, B>, [ThickRungArgs<f32>], SPREAD, 0;
     narrow_approach_signs_f64: approach::signs::<f64, B>, [ThickRungArgs<f64>], SPREAD, 0;
     narrow_approach_exact_f32: approach::exact::<f32, B>, [ThickRungArgs<f32>], SPREAD, 0;

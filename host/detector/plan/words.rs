@@ -97,7 +97,7 @@ const KERNELS: [(&str, &str); 111] = [
     ("narrow_approach_signs", "those that come nearer than at the start, by bounds of errors"),
     ("narrow_approach_exact", "the same in integers, of pairs left uncertain"),
     ("narrow_approach_advance", "times at which others do, by advancement"),
-    ("narrow_approach", "pairs that are near at the start"),
+    ("narrow_approach", "pairs that may be near at the start"),
     ("narrow_part", "supporting planes, by the largest radius of each pair"),
     ("narrow_separate_thick", "supporting planes, of radii that differ"),
     ("narrow_separate", "supporting planes"),

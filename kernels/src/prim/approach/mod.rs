@@ -26,11 +26,19 @@
 //!
 //! # In parts
 //!
-//! A GPU takes pairs in four launches: [`Motion::begin`] for all, [`Motion::by_bounds`] for those
-//! that are near at the start, [`Motion::by_integers`] for those that it leaves, [`Motion::advance`]
-//! for those whose distance may fall later. [`Motion::course`] is the four in sequence, so the course
-//! of a pair is a function of the pair. A sign by a bound is the exact one: integers would decide the
-//! same. They do not hold every pair, so bounds always come first.
+//! A GPU takes pairs in four launches: distances in f32 for all, [`Motion::begin`] and
+//! [`Motion::by_bounds`] for those that may be near at the start, [`Motion::by_integers`] for those
+//! that it leaves, [`Motion::advance`] for those whose distance may fall later. [`Motion::course`] is
+//! the last four in sequence, so the course of a pair is a function of the pair. A sign by a bound is
+//! the exact one: integers would decide the same. They do not hold every pair, so bounds always come
+//! first.
+//!
+//! *Distances in f32* ([`super::near::Filter`]) change no course: a pair that they drop is
+//! [`Begin::Beyond`]. Let `w` be the separation and the largest radius. The filter drops a pair if its
+//! computed distance exceeds `w` by `192u` of the reach, with the `u` of f32. That distance exceeds the
+//! true one by at most `153u` of the reach. So the true one exceeds `w` by `39u` of the reach, and the
+//! reach is at least `w / 2`. [`Motion::begin`] needs `224u` of the reach and some `16u` of `w`, with
+//! the `u` of f64, which is smaller by 2^29.
 //!
 //! *The nearest point by bounds.* The computed nearest point suggests a corner, a side or the inside.
 //! If all other corners are strictly beyond its plane and it is strictly between its ends, it is the
@@ -308,8 +316,9 @@ impl Fall {
     }
 }
 
+/// The largest of four radii.
 #[inline(always)]
-fn largest([a, b, c, d]: [f64; 4]) -> f64 {
+pub fn largest([a, b, c, d]: [f64; 4]) -> f64 {
     Real::max(Real::max(a, b), Real::max(c, d))
 }
 

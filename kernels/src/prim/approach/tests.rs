@@ -1,8 +1,10 @@
 use super::forms::start;
 use super::*;
+use crate::exec::RowMap;
 use crate::math::Vec3;
 use crate::prim::cubic::Moving;
 use crate::prim::isolate::{Edges, Face};
+use crate::prim::near::Filter;
 use crate::random::Random;
 
 /// Every form of a pair.
@@ -126,4 +128,64 @@ fn the_parts_have_the_course_of_the_whole() {
     // Each part has its share.
     assert!(by_bounds > 5_000 && suggested > 5_000, "{by_bounds} {suggested}");
     assert!(open > 2_000 && advancing > 500, "{open} {advancing}");
+}
+
+/// Distances in f32 drop only pairs that begin beyond the separation, also if radii differ and if
+/// positions are of f32.
+#[test]
+fn pairs_that_f32_drops_begin_beyond() {
+    let mut r = Random(11);
+    let (mut dropped, mut beyond, mut near, mut at_the_limit) = (0, 0, 0, 0);
+    for i in 0..40_000 {
+        let mut v = hostile(&mut r);
+        if i % 3 == 0 {
+            v = v.map(|ends| ends.map(|at| Vec3(at.0.map(|x| x as f32 as f64))));
+        }
+        let is_face = i % 2 == 0;
+        let row = v.map(|[start, _]| start);
+        let radii =
+            if i % 5 == 0 { [0.125, 0.25, 0.0, 0.5].map(|x| x * (r.below(3) as f64)) } else { [0.0; 4] };
+        let distance = if is_face {
+            crate::prim::near::distance::<f64, true>(row).0
+        } else {
+            crate::prim::near::distance::<f64, false>(row).0
+        };
+        // Also separations just below and above the distance, by roundings of f64 and of f32.
+        let is_at_the_limit = i / 2 % 3 == 0 && distance.is_finite();
+        let min_separation = if is_at_the_limit {
+            let parts = [0.0, 1e-16, -1e-16, 1e-12, -1e-12, 1e-7, -1e-7, 1e-5, -1e-5, -1e-4, -1e-3];
+            Real::max(distance * (1.0 + parts[i / 6 % parts.len()]), 0.0)
+        } else {
+            [0.0, 0.25, 1.0, 50.0][i / 2 % 4]
+        };
+        let p = Params { min_separation, ..Params::new(1e-6) };
+        let within = min_separation + largest(radii);
+        let (of_r, of_f32) = if is_face {
+            let single = row.map(|at| Vec3(at.0.map(|x| x as f32)));
+            (Filter::<f64, true>::new(within).at_once(row), Filter::<f32, true>::new(within).at_once(single))
+        } else {
+            let single = row.map(|at| Vec3(at.0.map(|x| x as f32)));
+            (
+                Filter::<f64, false>::new(within).at_once(row),
+                Filter::<f32, false>::new(within).at_once(single),
+            )
+        };
+        let is_single = row.iter().all(|at| at.0.iter().all(|&x| x as f32 as f64 == x));
+        let drops = [of_r, if is_single { of_f32 } else { 1 }].contains(&0);
+        with(&v, is_face, &p, |motion| match motion.begin(radii, &p) {
+            Begin::Beyond => {
+                beyond += 1;
+                dropped += drops as u32;
+                at_the_limit += (drops && is_at_the_limit) as u32;
+            }
+            Begin::Within(_) => {
+                assert!(!drops, "{is_face} {within:e} {distance:e} {v:?}");
+                near += 1;
+            }
+        });
+    }
+    assert!(
+        dropped > 10_000 && near > 5_000 && at_the_limit > 500,
+        "{dropped} {beyond} {near} {at_the_limit}"
+    );
 }

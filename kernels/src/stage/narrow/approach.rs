@@ -1,55 +1,75 @@
 //! # Approach: vertex/face and edge/edge pairs → those that may meet; contacts of those that part
 //! Paper    not in the paper.
 //! Launch   four, both kinds in each, before the first rung of the solver. Only for a query of what
-//!          approaches. [`approach()`] over all pairs, a lane each: distances alone. [`signs`] over
-//!          those that are near at the start: bounds of errors. [`exact`] over those that it leaves:
-//!          integers. [`advance`] over those whose distance may fall later; it leaves nothing for the
-//!          solver, so both may run at the same time. So lanes of a warp do the same, and few
-//!          registers read many pairs.
-//!          The last three have blocks of one warp. A short list is spread over all that run at once:
-//!          lanes of a warp wait for each other.
+//!          approaches. [`approach()`] over all pairs, a lane each: distances in f32. [`signs`] over
+//!          those that may be near at the start: bounds of errors. [`exact`] over those that it
+//!          leaves: integers. [`advance`] over those whose distance may fall later.
+//!          So lanes of a warp do the same, and few registers read many pairs.
+//!          The solver tests the pairs that [`approach()`] leaves at the same time as the other three
+//!          launches: neither reads a list that the other writes. Those that [`signs`] and [`exact`]
+//!          leave are in a list of their own, for the solver behind them.
+//!          The last three have blocks of one warp. A short list is spread over all blocks: lanes of
+//!          a warp wait for each other.
 //! Reads    pairs, faces or edges, positions of both frames (four vertices); tolerances of bodies and
-//!          radii of vertices, if they differ.
-//! Writes   pairs for the solver, in one list for the first three; pairs for the next launch, and with
-//!          a time for the last. Contacts and undecided pairs with bounds of toi; or the earliest.
+//!          radii of vertices, if they differ. [`approach()`] reads positions of the first frame.
+//! Writes   [`approach()`]: pairs for the solver, and pairs for [`signs`]. [`signs`] and [`exact`]:
+//!          pairs for the solver, in one list; pairs for the next launch, and with a time for the
+//!          last. Contacts and undecided pairs with bounds of toi; or the earliest.
 //! Before   pairs are complete.
 //! After    Let d be the distance of a pair at the start, and within = {pairs : d <= separation}.
-//!          within ⊆ near ⊆ pairs, and left of [`approach()`] = pairs less near.
-//!          {pairs not in within that come within the separation} ⊆ left.
+//!          beyond = {pairs certainly farther apart by f32}, near = pairs less beyond.
+//!          within ⊆ near; beyond ∩ within = {}. [`approach()`] puts each pair in one of two lists.
+//!          {pairs not in within that come within the separation} ⊆ beyond ∪ left.
 //!          {pairs in within that come nearer than d} ⊆ left ∪ listed, those that do so at once ⊆ left.
 //!          No time is late. Pairs in within that never come nearer are in neither, if the test
 //!          decides it. See [`crate::prim::approach`]: the course of a pair is a function of the pair,
 //!          so no answer depends on the launch that finds it.
-//! Room     left, the lists between the launches, hits: counted past the end, grown, run again.
+//! Room     beyond, near, left, the lists between the launches, hits: counted past the end, grown, run
+//!          again.
 //! Cost     8 B pair, 12 B indices, 128 B positions (gathered), in each launch that has it.
-//!          [`approach()`] 250 operations, [`signs`] 500 to 2,000. [`exact`] 1,000 a sign that bounds
-//!          leave open if the pair's coordinates span 60 bits, 20 times as many if they span more.
-//!          [`advance`] 300 to 600 a step; mostly 1 to 4 steps, of cloth up to 30.
+//!          [`approach()`] 220 operations of f32, [`signs`] 500 to 2,000. [`exact`] 1,000 a sign that
+//!          bounds leave open if the pair's coordinates span 60 bits, 20 times as many if they span
+//!          more. [`advance`] 300 to 600 a step; mostly 1 to 4 steps, of cloth up to 30.
 
 use super::climb::{FEWEST, Tiles, dealt, emit};
 use super::{edge_edge, of_edge_edge, of_vertex_face, radii_of_edges, radii_of_face, vertex_face};
 use crate::abi::{Begun, Listed, Output, Pair, ThickRungArgs};
-use crate::exec::{ALONE, Block, Lane, Share, Slot};
+use crate::exec::{ALONE, Block, Lane, RowMap, Share, Slot};
 use crate::math::{Real, Vec3};
 use crate::prim::approach::integers::Vertices;
-use crate::prim::approach::{Begin, Course, Decided, Motion};
+use crate::prim::approach::{Begin, Course, Decided, Motion, largest};
 use crate::prim::inclusion::Params;
 use crate::prim::isolate::{Edges, Face};
+use crate::prim::near::Filter;
 
-/// Distances: pairs that are beyond the separation at the start are left for the solver.
+/// Distances: pairs that are certainly beyond the separation at the start are left for the solver. f32
+/// leaves few others, and [`signs`] measures those in f64.
 pub fn approach<R: Real, B: Block>(block: &mut B, args: &ThickRungArgs<R>) {
     let (rung, lanes) = (&args.rung, block.lanes());
-    let begins = |of: &Moved<R>| match of.motion().begin(of.radii, &of.params) {
-        Begin::Beyond => Goes::ToSolver,
-        Begin::Within(_) => Goes::On,
-    };
+    let goes = |may_be_near: u32| if may_be_near == 0 { Goes::ToSolver } else { Goes::On };
     let share = block.share(rung.vf.pairs.listed(block), lanes);
-    sort(block, (&rung.vf, rung.vf_asked), (share, lanes), |lane, pair| begins(&face(lane, args, pair)));
+    sort(block, (&rung.vf, rung.vf_asked), (share, lanes), |lane, pair| {
+        let radii = differ(args).then(|| radii_of_face(lane, args.radii, rung.faces, pair));
+        let filter = Filter::<R, true>::new(within(args, of_vertex_face(lane, rung, pair), radii));
+        let (v, [x, y, z]) = vertex_face(lane, &rung.frames, rung.faces, pair);
+        goes(filter.at_once([v.t0, x.t0, y.t0, z.t0]))
+    });
     let share = block.share(rung.ee.pairs.listed(block), lanes);
-    sort(block, (&rung.ee, rung.ee_asked), (share, lanes), |lane, pair| begins(&edges(lane, args, pair)));
+    sort(block, (&rung.ee, rung.ee_asked), (share, lanes), |lane, pair| {
+        let radii = differ(args).then(|| radii_of_edges(lane, args.radii, rung.edges, pair));
+        let filter = Filter::<R, false>::new(within(args, of_edge_edge(lane, rung, pair), radii));
+        let [x, y] = edge_edge(lane, &rung.frames, rung.edges, pair);
+        goes(filter.at_once([x[0].t0, x[1].t0, y[0].t0, y[1].t0]))
+    });
 }
 
-/// Signs by bounds: of pairs that are near at the start.
+/// Features that are farther apart than this are beyond the separation, whichever points are nearest.
+#[inline(always)]
+fn within<R: Real>(args: &ThickRungArgs<R>, of_bodies: Params, radii: Option<[f64; 4]>) -> f64 {
+    of_query(args, of_bodies).min_separation + largest(radii.unwrap_or_default())
+}
+
+/// Signs by bounds: of pairs that may be near at the start. Those that are not are left for the solver.
 pub fn signs<R: Real, B: Block>(block: &mut B, args: &ThickRungArgs<R>) {
     spread(block, args, FEWEST, |of| {
         let Begin::Within(near) = of.motion().begin(of.radii, &of.params) else {
