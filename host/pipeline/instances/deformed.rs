@@ -85,6 +85,11 @@ impl Deformed {
         }))
     }
 
+    /// Returns the tiles that are refitted; there is one.
+    pub fn tiles(&self) -> &Buffer<u32> {
+        &self.levels[0]
+    }
+
     /// Refits the meshes to positions of the scene.
     ///
     /// # Errors

@@ -4,6 +4,7 @@
 mod deformed;
 mod mesh;
 mod motion;
+mod oriented;
 mod poses;
 
 pub use motion::InMotion;
@@ -19,7 +20,7 @@ use deformed::{Deformed, deforms};
 use mesh::MeshTiles;
 use nearmiss_kernels::abi::{
     InstanceFrame, InstanceRecord, InstanceTables, MeshLeaf, MeshNode, MeshRecord, MeshTriangle, Point,
-    PoseRecord, Span,
+    PoseRecord, Span, TileBox,
 };
 use nearmiss_kernels::math::{Vec3, rigid};
 use poses::Poses;
@@ -41,6 +42,9 @@ pub struct Instances {
     deformed: Option<Deformed>,
     /// Motions, from the first query of features on.
     motion: Option<InMotion>,
+    /// Oriented boxes of tiles, from the first query on that reads them. None if all meshes are
+    /// refitted.
+    boxes: Option<Buffer<TileBox>>,
     /// Most levels of nodes above the tiles of a mesh.
     pub levels: u32,
     /// The centre of each body's mesh; its first vertex in the scene, and among all meshes'.
@@ -108,6 +112,7 @@ impl Instances {
             tiles: all.tiles,
             deformed: Deformed::new(device, bodies, layout, (&all, &records))?,
             motion: None,
+            boxes: None,
             levels: all.levels,
             centres: records.iter().map(|record| centre(record).unwrap_or_default()).collect(),
             first_vertices: records.iter().enumerate().map(first_vertex).collect(),
@@ -170,6 +175,28 @@ impl Instances {
             }
         };
         motion.reserve(device, is_at_rest)
+    }
+
+    /// Readies oriented boxes of tiles, for queries that need no steps.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn ready_boxes(&mut self, device: &Device) -> Result<(), Error> {
+        let refitted = self.deformed.as_ref().map_or(0, |deformed| deformed.tiles().len());
+        if self.boxes.is_some() || refitted == self.tiles as usize {
+            return Ok(());
+        }
+        let refitted = self.deformed.as_ref().map_or(Ok(Vec::new()), |own| own.tiles().read(refitted))?;
+        let triangles = self.triangles.read(self.triangles.len())?;
+        let leaves = self.leaves.read(self.leaves.len())?;
+        let boxes = oriented::fit(&triangles, &leaves, &refitted);
+        self.boxes = Some(device.of(purpose::MESHES).upload(&boxes)?);
+        Ok(())
+    }
+
+    /// Returns oriented boxes of tiles, for kernels; empty if there are none.
+    pub fn boxes(&self) -> Span<TileBox> {
+        self.boxes.as_ref().map_or(Span::EMPTY, Buffer::span)
     }
 
     /// Returns motions; `None` before a query of features.

@@ -262,6 +262,8 @@ impl<R: Precision> SceneMemory<R> {
         };
         if kind.is_of_features() {
             instances.ready_motion(&self.device, (bodies, layout), kind.is_at_rest())?;
+        } else {
+            instances.ready_boxes(&self.device)?;
         }
         let instances = self.instances.insert(instances);
         let deform = instances.deform();

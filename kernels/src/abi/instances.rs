@@ -88,6 +88,20 @@ impl MeshLeaf {
     }
 }
 
+/// An oriented box around the triangles of a tile, in the frame of the mesh: see
+/// [`crate::bvh::tile_box`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct TileBox {
+    /// The centre.
+    pub centre: [f32; 3],
+    /// Two axes, about unit vectors. The third is their rounded cross product.
+    pub axes: [[f32; 3]; 2],
+    /// Half extents along the three axes, with the roundings of a test; infinite around everything.
+    pub half: [f32; 3],
+}
+const _: () = assert!(size_of::<TileBox>() == 48);
+
 /// A triangle of a mesh, in a place of a tile.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C, align(16))]
@@ -204,6 +218,8 @@ arguments! {
         next: Output<NodePair>,
         /// Out: pairs of tiles.
         tile_pairs: Output<NodePair>,
+        /// Oriented boxes of tiles; empty if all meshes are refitted. Only `traverse_nodes` reads them.
+        boxes: Span<TileBox>,
         /// Counters.
         counters: Counters,
     }

@@ -19,6 +19,8 @@ pub use group::{GROUP, Points};
 pub use linear::{Linear, Window};
 pub use obb::Obb;
 
+pub(crate) use axes::{Frame, WORLD, frame, three};
+
 use crate::math::tolerance::NEAR_GROWTH;
 use crate::math::{Real, Vec3};
 use bytemuck::Pod;

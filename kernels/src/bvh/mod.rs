@@ -14,6 +14,7 @@ pub mod placing;
 pub mod relation;
 pub mod rims;
 pub mod thick;
+pub mod tile_box;
 pub mod tiles;
 pub mod turns;
 

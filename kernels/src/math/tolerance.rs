@@ -361,6 +361,15 @@ pub const RELATIVE_FAR: f64 = 16.0 * U64;
 /// Largest reach of two bodies, radii and distance, for which frames are computed: `2^100`. Beyond
 /// it every volume overlaps every other. Sums stay finite. Length.
 pub const RELATIVE_LIMIT: f64 = f64::from_bits((1023 + 100) << 52);
+/// Factor of that error for oriented boxes of tiles: the root of 3, for directions are not axes of the
+/// frame. Derived in `bvh::tile_box`. Ratio.
+pub const TILE_SLACK: f32 = 1.75;
+/// Error of a test of two oriented boxes of tiles, relative to the sum of all six half extents: `64u`.
+/// Each half extent has this part of the sum of its box. Derived in `bvh::tile_box`. Ratio.
+pub const TILE_BOX: f64 = 64.0 * U32 as f64;
+/// Error of a half extent that is computed in f64, relative to the extent from the centre: `8U`.
+/// Derived in `bvh::tile_box`. Ratio.
+pub const TILE_EXTENT: f64 = 8.0 * U64;
 /// Factor of that error for a difference of heights in a direction: the error itself, and `12u` of
 /// the reach, of which it has `32u`. Derived in `prim::planes`. Ratio.
 pub const PLANE_SLACK: f32 = 2.0;

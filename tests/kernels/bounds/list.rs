@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// Constants on which no proof of an answer rests, or which are no allowance.
-const OTHERS: [(&str, &str); 46] = [
+const OTHERS: [(&str, &str); 49] = [
     ("U32", "the unit"),
     ("U64", "the unit"),
     ("CUBIC_VALUE", "a guess: the cubic's roots guarantee nothing"),
@@ -39,6 +39,9 @@ const OTHERS: [(&str, &str); 46] = [
     ("POSE_UNIT", "a range of what is taken for a pose"),
     ("RELATIVE_LIMIT", "a range"),
     ("PLANE_LIMIT", "a range"),
+    ("TILE_SLACK", "the root of 3, rounded up, of RELATIVE_SLACK: tests of bvh/tile_box.rs need a hundredth"),
+    ("TILE_BOX", "`roundings_of_a_gap` of bvh/tile_box.rs measures it"),
+    ("TILE_EXTENT", "roundings of f64, a millionth of TILE_BOX: no test can need them"),
     ("TURN_FAINT", "a range"),
     ("TURN_MOST", "a range"),
     ("TURNING_FAINT", "a range"),

@@ -49,7 +49,7 @@ impl Descent {
         launch: impl Fn(&NodesArgs) -> Result<(), Error>,
     ) -> Result<(), Error> {
         let instances = given.instances.ok_or_else(without_instances)?;
-        let (tables, levels) = (instances.tables(), instances.levels.max(1));
+        let (tables, boxes, levels) = (instances.tables(), instances.boxes(), instances.levels.max(1));
         let tile_pairs = self.tile_pairs.output(counters);
         debug_assert!(levels <= MESH_LEVELS);
         let mut pairs = Output::EMPTY;
@@ -61,7 +61,7 @@ impl Descent {
             } else {
                 self.after_level(given.device, level as usize, room)?.output(counters)
             };
-            launch(&NodesArgs { tables, relations, pairs, next, tile_pairs, counters })?;
+            launch(&NodesArgs { tables, relations, pairs, next, tile_pairs, boxes, counters })?;
             pairs = next;
         }
         Ok(())
