@@ -6,8 +6,8 @@
 //! Writes   pairs of tiles, or pairs for the next level, in no order.
 //! Before   relations and pairs are listed. The children of a node are all tiles, or none is.
 //! After    tile_pairs ∪ next ⊇ {(c, d) : c below a, d below b, boxes overlap in both frames}, for
-//!          each (a, b) in pairs. A tile is below itself. [`nodes`]: tile_pairs has no tiles whose
-//!          oriented boxes are apart.
+//!          each (a, b) in pairs. A tile is below itself. [`nodes`]: so is a node above tiles, if the
+//!          other is higher; and tile_pairs has no tiles whose oriented boxes are apart.
 //!          A pair that is left out has no two triangles with a common point.
 //! Room     both lists may be too short: counters go on, the host grows them and runs again.
 //! Cost     32 B a node; a box in the other frame 50 operations. Those of one side that meet the
@@ -148,7 +148,7 @@ struct Oriented<'a, B: Block> {
 }
 
 impl<B: Block> Descent<Relation, B> for Oriented<'_, B> {
-    const IS_EVEN: bool = false;
+    const IS_EVEN: bool = true;
     #[inline(always)]
     fn limit(&mut self, _: &mut B, _: u32, _: &Relation) -> f32 {
         0.0
