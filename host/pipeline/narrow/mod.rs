@@ -11,7 +11,6 @@ mod exclude;
 mod features;
 mod left;
 mod near;
-mod rung;
 mod rungs;
 mod start;
 mod turning;
