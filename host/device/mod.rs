@@ -10,6 +10,7 @@ mod interrupt;
 mod ledger;
 mod marks;
 mod peers;
+mod place;
 mod replay;
 mod shared;
 mod usage;
@@ -22,6 +23,7 @@ pub use marks::Event;
 #[doc(hidden)]
 pub use nearmiss_emulator as emulator;
 pub use nearmiss_emulator::Interrupt;
+pub(crate) use place::Place;
 pub(crate) use replay::{Marks, Replay};
 pub use shared::Owner;
 pub use view::{Ahead, Kept, View};
@@ -241,10 +243,18 @@ impl Device {
     /// # Errors
     /// Errors of the device.
     pub fn blocks_at_once<E: Entry>(&self, room: usize) -> Result<u32, Error> {
-        let full = match &*self.machine {
-            Machine::Emulator(_) => self.blocks_striding::<E>(room),
+        self.blocks_at_once_in::<E>(Place::Whole, room)
+    }
+
+    /// The same, in a part of the device.
+    ///
+    /// # Errors
+    /// Errors of the device.
+    pub(crate) fn blocks_at_once_in<E: Entry>(&self, place: Place, room: usize) -> Result<u32, Error> {
+        let full = match (&*self.machine, place) {
+            (Machine::Emulator(_), _) => self.blocks_striding::<E>(room),
             #[cfg(feature = "cuda")]
-            Machine::Cuda(c) => c.blocks_at_once::<E>()?,
+            (Machine::Cuda(c), place) => c.blocks_at_once::<E>(place)?,
         };
         Ok(self.blocks_for::<E>(room).clamp(1, full.max(1)))
     }

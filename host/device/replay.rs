@@ -39,6 +39,10 @@ pub enum Act {
     Back,
     /// Later steps come after all that went aside.
     Join,
+    /// A point behind all that went aside so far.
+    Flag,
+    /// Later steps come after all that went aside before the last [`Act::Flag`].
+    JoinFlag,
 }
 
 /// The steps of a device, in order.
@@ -55,7 +59,7 @@ impl Listing {
     pub fn acts(&self) -> impl Iterator<Item = (Act, &[u64])> {
         self.acts.iter().map(|&act| match act {
             Act::Launch { args, .. } => (act, &self.args[args..]),
-            Act::Fill { .. } | Act::Mark(_) | Act::Aside | Act::Back | Act::Join => (act, [].as_slice()),
+            _ => (act, [].as_slice()),
         })
     }
 
@@ -211,8 +215,9 @@ impl Device {
         }
     }
 
-    /// Does work at the same time as later work, until [`Device::join`]. Neither needs what the other
-    /// writes. It is done in its turn on a CPU, outside a replay, and when stages are timed.
+    /// Does work at the same time as later work, until [`Device::join`] or [`Device::join_flag`].
+    /// Neither needs what the other writes. It comes after all earlier work of this function. It is
+    /// done in its turn on a CPU, outside a replay, and when stages are timed.
     ///
     /// # Errors
     /// Errors of the work.
@@ -226,6 +231,17 @@ impl Device {
     /// Later work comes after all work of [`Device::beside`].
     pub(crate) fn join(&self) {
         self.lists(Act::Join);
+    }
+
+    /// Notes a point behind all work of [`Device::beside`] so far.
+    pub(crate) fn flag(&self) {
+        self.lists(Act::Flag);
+    }
+
+    /// Later work comes after the work of [`Device::beside`] before the last [`Device::flag`]. Work
+    /// of [`Device::beside`] behind that point goes on at the same time.
+    pub(crate) fn join_flag(&self) {
+        self.lists(Act::JoinFlag);
     }
 
     fn lists(&self, act: Act) {

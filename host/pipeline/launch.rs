@@ -1,7 +1,7 @@
 //! Launches, by the number of blocks. The only place that vouches for the arguments of a frame's
 //! kernels.
 
-use crate::device::Device;
+use crate::device::{Device, Place};
 use crate::error::Error;
 use nearmiss_kernels::entry::Entry;
 
@@ -38,5 +38,18 @@ pub fn striding<E: Entry>(device: &Device, capacity: usize, args: &E::Args) -> R
 /// # Errors
 /// Device errors.
 pub fn at_once<E: Entry>(device: &Device, capacity: usize, args: &E::Args) -> Result<(), Error> {
-    blocks::<E>(device, device.blocks_at_once::<E>(capacity)?, args)
+    at_once_in::<E>(device, Place::Whole, capacity, args)
+}
+
+/// As [`at_once`], in a part of the device: for launches at the same time.
+///
+/// # Errors
+/// Device errors.
+pub fn at_once_in<E: Entry>(
+    device: &Device,
+    place: Place,
+    capacity: usize,
+    args: &E::Args,
+) -> Result<(), Error> {
+    blocks::<E>(device, device.blocks_at_once_in::<E>(place, capacity)?, args)
 }

@@ -156,12 +156,17 @@ pub struct Side {
     event: Event,
     /// Whether the other stream has not met it since.
     is_away: bool,
+    /// A point of the work here.
+    flag: Event,
+    /// Whether the other stream has not met that point.
+    is_flagged: bool,
 }
 
 impl Side {
     /// Makes one.
     pub fn new(context: &Arc<Context>, gpu: &Bound) -> Result<Side, Refusal> {
-        Ok(Side { stream: Stream::new(context)?, event: Event::new(context, gpu)?, is_away: false })
+        let [event, flag] = [Event::new(context, gpu)?, Event::new(context, gpu)?];
+        Ok(Side { stream: Stream::new(context)?, event, is_away: false, flag, is_flagged: false })
     }
 
     /// The stream.
@@ -182,7 +187,25 @@ impl Side {
         if self.is_away {
             self.event.record(gpu, &self.stream)?;
             other.follow(gpu, &self.event)?;
-            self.is_away = false;
+            (self.is_away, self.is_flagged) = (false, false);
+        }
+        Ok(())
+    }
+
+    /// Notes the end of the work so far here, unless the other stream has met it.
+    pub fn flag(&mut self, gpu: &Bound) -> Result<(), Refusal> {
+        if self.is_away {
+            self.flag.record(gpu, &self.stream)?;
+            self.is_flagged = true;
+        }
+        Ok(())
+    }
+
+    /// Puts what follows in the other stream after the work here before the last flag.
+    pub fn meet_flag(&mut self, gpu: &Bound, other: &Stream) -> Result<(), Refusal> {
+        if self.is_flagged {
+            other.follow(gpu, &self.flag)?;
+            self.is_flagged = false;
         }
         Ok(())
     }

@@ -141,3 +141,48 @@ fn a_thread_is_held_alone_and_on_one_device() {
     }
     assert_eq!(device.replays(), 2);
 }
+
+/// Work with two parts aside, and perhaps a flag between them that later work comes after.
+fn branches(device: &Device, memory: &Memory, [flag, join_flag]: [bool; 2]) -> Result<(), Error> {
+    device.beside(|| memory.launch(device, 0))?;
+    if flag {
+        device.flag();
+    }
+    device.beside(|| memory.launch(device, 1))?;
+    memory.launch(device, 0)?;
+    if join_flag {
+        device.join_flag();
+    }
+    memory.launch(device, 1)?;
+    device.join();
+    Ok(())
+}
+
+#[test]
+fn branches_are_the_same_work_if_they_part_and_meet_at_the_same_steps() {
+    assert_eq!(replays(|device, memory, _, _| branches(device, memory, [true, true])), 3);
+    let faults: [Frame; 3] = [
+        |device, memory, _, round| branches(device, memory, [round % 2 == 0, true]),
+        |device, memory, _, round| branches(device, memory, [true, round % 2 == 0]),
+        |device, memory, _, round| branches(device, memory, [round % 2 == 0; 2]),
+    ];
+    assert_eq!(faults.map(replays), [0, 0, 0]);
+}
+
+/// A GPU takes the steps of the list in this order. Steps aside are in sequence, and the flag is
+/// between the two parts.
+#[test]
+fn a_flag_is_listed_between_the_parts_aside_and_joined_before_the_second_ends() {
+    let device = engine();
+    let memory = Memory::of(&device);
+    let only = LaunchesOnly::new(&device.usage, Some(Listing::default()));
+    branches(&device, &memory, [true, true]).expect("launches");
+    let list = only.listed();
+    let is_launch = |act: &Act| matches!(act, Act::Launch { .. });
+    let acts: Vec<Option<Act>> = list.acts().map(|(act, _)| (!is_launch(&act)).then_some(act)).collect();
+    let (aside, back) = (Some(Act::Aside), Some(Act::Back));
+    let (flag, join_flag, join) = (Some(Act::Flag), Some(Act::JoinFlag), Some(Act::Join));
+    let (first, second) = ([aside, None, back, flag], [aside, None, back]);
+    let rest = [None, join_flag, None, join];
+    assert_eq!(acts, [&first[..], &second, &rest].concat());
+}

@@ -8,6 +8,8 @@ pub struct Capacities {
     pub hits: [usize; 2],
     /// Pairs that a rung leaves to the next.
     pub left: [usize; 2],
+    /// Pairs that may be near at the start, in a query of what approaches.
+    pub near: [usize; 2],
     /// Pairs that a long list leaves to be settled.
     pub asked: [usize; 2],
 }
@@ -15,7 +17,7 @@ pub struct Capacities {
 impl Capacities {
     /// Those of a query with so many pairs.
     pub fn usual(few: usize) -> Capacities {
-        let left = [few / 4, few / 4];
-        Capacities { survivors: [few, 2 * few], hits: [few, few], left, asked: [0, 0] }
+        let (left, near) = ([few / 4, few / 4], [few / 64, few / 64]);
+        Capacities { survivors: [few, 2 * few], hits: [few, few], left, near, asked: [0, 0] }
     }
 }

@@ -1,5 +1,6 @@
 //! The lists between the rungs of a certified solver: names, counters, memory.
 
+use super::Capacities;
 use crate::device::Device;
 use crate::error::Error;
 use crate::pipeline::list::{GrowableOutput, List, Named, named};
@@ -10,7 +11,7 @@ use nearmiss_kernels::abi::{Begun, Counter, Pair, counter};
 pub type OfKinds = [(&'static str, &'static str, Counter); 2];
 
 /// The lists that rungs leave.
-pub const LEFT: [OfKinds; 5] = [
+pub const LEFT: [OfKinds; 2] = [
     [
         ("narrow: vf for f64", "vertex/face pairs for f64", counter::VF_ESCALATED),
         ("narrow: ee for f64", "edge/edge pairs for f64", counter::EE_ESCALATED),
@@ -19,9 +20,13 @@ pub const LEFT: [OfKinds; 5] = [
         ("narrow: vf for slices", "vertex/face pairs for slices", counter::VF_HARD),
         ("narrow: ee for slices", "edge/edge pairs for slices", counter::EE_HARD),
     ],
+];
+
+/// The lists of a query of what approaches, in the order of [`Approaching::lists`].
+const APPROACHING: [OfKinds; 5] = [
     [
-        ("narrow: vf that may approach", "vertex/face pairs that may approach", counter::VF_APPROACHING),
-        ("narrow: ee that may approach", "edge/edge pairs that may approach", counter::EE_APPROACHING),
+        ("narrow: vf beyond at the start", "vertex/face pairs beyond at the start", counter::VF_BEGIN_BEYOND),
+        ("narrow: ee beyond at the start", "edge/edge pairs beyond at the start", counter::EE_BEGIN_BEYOND),
     ],
     [
         ("narrow: vf near at the start", "vertex/face pairs near at the start", counter::VF_BEGIN_NEAR),
@@ -31,12 +36,14 @@ pub const LEFT: [OfKinds; 5] = [
         ("narrow: vf for integers", "vertex/face pairs for integers", counter::VF_UNBOUNDED),
         ("narrow: ee for integers", "edge/edge pairs for integers", counter::EE_UNBOUNDED),
     ],
-];
-
-/// The lists of pairs that advance.
-pub const ADVANCING: OfKinds = [
-    ("narrow: vf that advance", "vertex/face pairs that advance", counter::VF_ADVANCING),
-    ("narrow: ee that advance", "edge/edge pairs that advance", counter::EE_ADVANCING),
+    [
+        ("narrow: vf that may approach", "vertex/face pairs that may approach", counter::VF_APPROACHING),
+        ("narrow: ee that may approach", "edge/edge pairs that may approach", counter::EE_APPROACHING),
+    ],
+    [
+        ("narrow: vf that advance", "vertex/face pairs that advance", counter::VF_ADVANCING),
+        ("narrow: ee that advance", "edge/edge pairs that advance", counter::EE_ADVANCING),
+    ],
 ];
 
 /// The lists of pairs to settle. How many there are depends on the machine, so none is compared.
@@ -47,7 +54,7 @@ pub const ASKED: OfKinds = [
 
 /// Pairs that a rung leaves: vertex/face, edge/edge.
 pub enum Left {
-    /// To isolation, or to slices.
+    /// To isolation, to slices, or to signs.
     Pairs([List<Pair>; 2]),
     /// With a separation: with times that are proven.
     Begun([List<Begun>; 2]),
@@ -76,6 +83,51 @@ impl Left {
             Left::Pairs([vf, ee]) => [named(of_vf, vf), named(of_ee, ee)],
             Left::Begun([vf, ee]) => [named(of_vf, vf), named(of_ee, ee)],
         }
+    }
+}
+
+/// The lists of a query of what approaches.
+pub struct Approaching {
+    /// Pairs beyond the separation at the start: for the solver.
+    pub beyond: Left,
+    /// Pairs that may be near at the start.
+    pub near: Left,
+    /// Pairs that bounds of errors do not decide.
+    pub unbounded: Left,
+    /// Near pairs that are left for the solver.
+    pub approaching: Left,
+    /// Pairs whose distance may fall later.
+    pub advancing: Left,
+}
+
+impl Approaching {
+    /// Allocates the lists.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn new(device: &Device, capacities: &Capacities) -> Result<Self, Error> {
+        let [beyond, near, unbounded, approaching, advancing] = APPROACHING;
+        let pairs = |names, capacity| lists(device, names, capacity).map(Left::Pairs);
+        Ok(Approaching {
+            beyond: pairs(beyond, capacities.survivors)?,
+            near: pairs(near, capacities.near)?,
+            unbounded: pairs(unbounded, capacities.near)?,
+            approaching: pairs(approaching, capacities.near)?,
+            advancing: lists(device, advancing, capacities.near).map(Left::Begun)?,
+        })
+    }
+
+    /// Returns the lists.
+    pub fn growable(&mut self) -> impl Iterator<Item = &mut dyn GrowableOutput> {
+        let Approaching { beyond, near, unbounded, approaching, advancing } = self;
+        [beyond, near, unbounded, approaching, advancing].into_iter().flat_map(Left::growable)
+    }
+
+    /// Returns the lists, with names.
+    pub fn named(&self) -> impl Iterator<Item = Named<'_>> {
+        let Approaching { beyond, near, unbounded, approaching, advancing } = self;
+        let all = [beyond, near, unbounded, approaching, advancing].into_iter().zip(APPROACHING);
+        all.flat_map(|(left, names)| left.named(names.map(|(name, ..)| name)))
     }
 }
 

@@ -11,6 +11,7 @@ mod exclude;
 mod features;
 mod left;
 mod near;
+mod rung;
 mod rungs;
 mod start;
 mod turning;

@@ -106,9 +106,14 @@ counters! { 0;
     VF_ESCALATED,
     /// Edge/edge pairs that f32 leaves to f64.
     EE_ESCALATED,
-    /// Vertex/face pairs that are near at the start, in a query of what approaches.
+    /// Vertex/face pairs that are certainly not near at the start, in a query of what approaches: they
+    /// are left for the solver.
+    VF_BEGIN_BEYOND,
+    /// Edge/edge pairs that are certainly not near at the start.
+    EE_BEGIN_BEYOND,
+    /// Vertex/face pairs that may be near at the start.
     VF_BEGIN_NEAR,
-    /// Edge/edge pairs that are near at the start.
+    /// Edge/edge pairs that may be near at the start.
     EE_BEGIN_NEAR,
     /// Vertex/face pairs of them that bounds of errors do not decide.
     VF_UNBOUNDED,
@@ -118,9 +123,9 @@ counters! { 0;
     VF_ADVANCING,
     /// Edge/edge pairs of them whose distance may fall later.
     EE_ADVANCING,
-    /// Vertex/face pairs that are left for the solver by a query of what approaches.
+    /// Vertex/face pairs of them that are left for the solver.
     VF_APPROACHING,
-    /// Edge/edge pairs that it leaves.
+    /// Edge/edge pairs of them that are left for the solver.
     EE_APPROACHING,
     /// Hits that are neither certain contacts nor certainly none.
     UNDECIDED,

@@ -68,7 +68,7 @@ fn some<R: Precision>(
     let candidates =
         if how.filters || solver.certified().is_some_and(Certified::is_apart) { all } else { [0, 0] };
     let mut features = Features::new(device, &layout, candidates)?;
-    let capacities = Capacities { survivors: all, hits: all, left: all, asked: all };
+    let capacities = Capacities { survivors: all, hits: all, left: all, near: all, asked: all };
     let mut narrow = ContinuousNarrow::new(device, solver, capacities)?;
     let mut counts = Counts::default();
     let given = [&vf[..], &ee];

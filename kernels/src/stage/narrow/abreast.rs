@@ -6,6 +6,8 @@
 //!          A block's pairs are eight together, then a grid of such groups apart.
 //!          Pairs of vertices with different radii have a kernel of their own, [`part`]. It only parts
 //!          pairs, by the separation and the largest radius of each pair.
+//!          A query of what approaches has two launches at the same time, over the two lists that
+//!          [`super::approach`] leaves. The larger one has a block less on each processor.
 //! Reads    pairs, faces or edges, positions of both frames (four vertices); tolerances of bodies,
 //!          if they differ; radii, with such vertices.
 //! Writes   contacts and undecided pairs with bounds of toi; or the earliest. The rest, in its own

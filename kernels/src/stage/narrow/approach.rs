@@ -4,24 +4,28 @@
 //!          approaches. [`approach()`] over all pairs, a lane each: distances in f32. [`signs`] over
 //!          those that may be near at the start: bounds of errors. [`exact`] over those that it
 //!          leaves: integers. [`advance`] over those whose distance may fall later.
-//!          [`advance`] leaves nothing for the solver, so both may run at the same time. Lanes of a
-//!          warp do the same, and few registers read many pairs.
-//!          The last three have blocks of one warp. A short list is spread over all that run at
-//!          once: lanes of a warp wait for each other.
+//!          So lanes of a warp do the same, and few registers read many pairs.
+//!          The solver tests the pairs that [`approach()`] leaves at the same time as the other three
+//!          launches: neither reads a list that the other writes. Those that [`signs`] and [`exact`]
+//!          leave are in a list of their own, for the solver behind them.
+//!          The last three have blocks of one warp. A short list is spread over all blocks: lanes of
+//!          a warp wait for each other.
 //! Reads    pairs, faces or edges, positions of both frames (four vertices); tolerances of bodies and
 //!          radii of vertices, if they differ. [`approach()`] reads positions of the first frame.
-//! Writes   pairs for the solver, in one list for the first three; pairs for the next launch, and with
-//!          a time for the last. Contacts and undecided pairs with bounds of toi; or the earliest.
+//! Writes   [`approach()`]: pairs for the solver, and pairs for [`signs`]. [`signs`] and [`exact`]:
+//!          pairs for the solver, in one list; pairs for the next launch, and with a time for the
+//!          last. Contacts and undecided pairs with bounds of toi; or the earliest.
 //! Before   pairs are complete.
 //! After    Let d be the distance of a pair at the start, and within = {pairs : d <= separation}.
 //!          beyond = {pairs certainly farther apart by f32}, near = pairs less beyond.
 //!          within ⊆ near; beyond ∩ within = {}. [`approach()`] puts each pair in one of two lists.
-//!          {pairs not in within that come within the separation} ⊆ left, and beyond ⊆ left.
+//!          {pairs not in within that come within the separation} ⊆ beyond ∪ left.
 //!          {pairs in within that come nearer than d} ⊆ left ∪ listed, those that do so at once ⊆ left.
 //!          No time is late. Pairs in within that never come nearer are in neither, if the test
 //!          decides it. See [`crate::prim::approach`]: the course of a pair is a function of the pair,
 //!          so no answer depends on the launch that finds it.
-//! Room     left, the lists between the launches, hits: counted past the end, grown, run again.
+//! Room     beyond, near, left, the lists between the launches, hits: counted past the end, grown, run
+//!          again.
 //! Cost     8 B pair, 12 B indices, 128 B positions (gathered), in each launch that has it.
 //!          [`approach()`] 220 operations of f32, [`signs`] 500 to 2,000. [`exact`] 1,000 a sign that
 //!          bounds leave open if the pair's coordinates span 60 bits, 20 times as many if they span

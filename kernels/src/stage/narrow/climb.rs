@@ -4,6 +4,8 @@
 //!          rest (or one of them over all), then the slices of [`super::slice`] over the rest of
 //!          that. If f32 is all, [`settle`] over what it leaves. A separation has rungs of its own:
 //!          [`super::abreast`], then [`super::separate`].
+//!          A query of what approaches has the first rung twice at the same time, over the two lists
+//!          that [`super::approach`] leaves. Both append to the same lists.
 //!          If f64 has a long list, it settles no pair: [`settle`] does, before the slices, in full
 //!          warps.
 //!          A lane a pair, both kinds in one launch. A block takes tiles of one kind; a grid of any
