@@ -200,6 +200,8 @@ def choices():
         found = own.query(nm.Near(1))
         yield (f"{name}.grouped", "by"), listed(lambda: own.grouped(found, 0, "x"))
         yield (f"{name}.prepare", "grouped"), listed(lambda: own.prepare({}, [nm.Near(1)], grouped=["x"]))
+    own, none = nm.Detector(body, device=cpu), [[]] * 3
+    yield ("Detector.prepare_poses", "grouped"), listed(lambda: own.prepare_poses(*none, [nm.Near(1)], grouped=["x"]))
     for name in ["broad_phase", "bounding_volume", "rebuild"]:
         yield ("configure", name), listed(lambda: research.configure(nm.Near(1), **{name: "x"}))
 
@@ -212,7 +214,7 @@ def wrong_choices(text, known):
 
 def test_editors_show_every_choice():
     text, known = INSTALLED.read_text(), dict(choices())
-    assert len(known) == 10 and wrong_choices(text, known) == []
+    assert len(known) == 11 and wrong_choices(text, known) == []
 
 
 def test_a_choice_that_is_missing_is_noticed():

@@ -949,7 +949,7 @@ class DeviceAnswer:
 
     @property
     def entries(self) -> Literal["triangle pairs", "contacts", "near pairs", "nearest triangles", "body pairs"]:
-        """Kind of rows: "triangle pairs", "contacts", "near pairs" or "nearest triangles"."""
+        """Kind of rows: "triangle pairs", "contacts", "near pairs", "nearest triangles" or "body pairs"."""
 
     @property
     def lists(self) -> list[dict[str, DeviceArray]]:
@@ -962,7 +962,9 @@ class DeviceAnswer:
           uint32: 1 contact, 2 undecided, 4 added if the iterations ended.
         - Near pairs: feature_a, feature_b, squared_distances (room,) float64, at (room, 2) float64:
           the weights of the face's corners 1 and 2, or the place on each edge.
-        - Nearest triangles: triangles, distances, at (room, 2, 2), points (room, 2, 3).
+        - Nearest triangles: triangles, distances, at (room, 2, 2), points (room, 2, 3). One row, or a
+          row for each pair of bodies in no order.
+        - Body pairs: bodies (room, 2) int32, in no order.
         """
 
     @property
@@ -1264,7 +1266,15 @@ class Detector:
         least_by_vertex: bool = False,
         grouped: Sequence[Literal["vertex", "edge", "face", "corner"]] | None = None,
     ) -> None:
-        """"""
+        """Prepare submissions of many rigid bodies that move by arrays of poses, a row a body.
+
+        Other bodies rest where they are.
+
+        - `ids`, `positions`, `quaternions`, `end_positions`, `end_quaternions`: as of `update_poses`,
+          arrays that stay where they are: of the GPU, or packed numpy arrays on a CPU. Write new poses into
+          them. They are held while prepared.
+        - `queries`, `geometry`, `least_by_vertex`, `grouped`: as of `prepare`.
+        """
 
     @property
     def is_prepared(self) -> bool:
