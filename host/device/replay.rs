@@ -59,7 +59,13 @@ impl Listing {
     pub fn acts(&self) -> impl Iterator<Item = (Act, &[u64])> {
         self.acts.iter().map(|&act| match act {
             Act::Launch { args, .. } => (act, &self.args[args..]),
-            _ => (act, [].as_slice()),
+            Act::Fill { .. }
+            | Act::Mark(_)
+            | Act::Aside
+            | Act::Back
+            | Act::Join
+            | Act::Flag
+            | Act::JoinFlag => (act, [].as_slice()),
         })
     }
 

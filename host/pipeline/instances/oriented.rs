@@ -116,9 +116,9 @@ mod tests {
             assert_eq!(boxes.len(), tiles.tiles.len());
             assert_eq!(check(&tiles, &boxes), Ok(()), "{count} triangles");
             let faults: [fn(&mut TileBox); 4] = [
-                |own| own.half[1] *= 0.9999,
-                |own| own.centre[0] += 1e-3 * own.half[0],
-                |own| own.axes[0][2] += 0.01,
+                |own| own.half = own.half.map(|half| 0.9999 * half),
+                |own| own.centre[0] += 1e-3 * own.half.into_iter().fold(0.0, f32::max),
+                |own| own.axes = own.axes.map(|axis| axis.map(|x| 1.01 * x)),
                 |own| own.half = [0.0; 3],
             ];
             for (i, fault) in faults.into_iter().enumerate() {
