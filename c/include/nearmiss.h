@@ -199,6 +199,9 @@ enum NearmissEntries
     NEARMISS_NEAR_PAIRS = 2,
     // `NearmissDeviceNearest`: two triangles, their distance and nearest points.
     NEARMISS_NEAREST = 3,
+    // `NearmissDevicePair`: two bodies that share a point, by their places in the scene. In no
+    // order.
+    NEARMISS_BODY_PAIRS = 4,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -876,9 +879,9 @@ typedef struct {
     NearmissStages ms;
 } NearmissSummary;
 
-// Two triangles, in memory of the device.
+// Two triangles, or two bodies, in memory of the device.
 typedef struct {
-    // The triangles.
+    // The triangles, or the bodies.
     uint32_t triangles[2];
 } NearmissDevicePair;
 

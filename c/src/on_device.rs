@@ -22,7 +22,8 @@ pub enum NearmissEntries {
     NEARMISS_NEAR_PAIRS = 2,
     /// `NearmissDeviceNearest`: two triangles, their distance and nearest points.
     NEARMISS_NEAREST = 3,
-    /// `NearmissDevicePair`: two bodies that share a point, by their places in the scene, in no order.
+    /// `NearmissDevicePair`: two bodies that share a point, by their places in the scene. In no
+    /// order.
     NEARMISS_BODY_PAIRS = 4,
 }
 

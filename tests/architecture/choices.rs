@@ -19,7 +19,7 @@ fn serves_volumes() -> Vec<Source> {
     let rooms = kernels.map(|room| format!("kernels/src/{room}"));
     let rooms: Vec<&str> = rooms.iter().map(String::as_str).chain(["emulator", "host"]).collect();
     let mut sources = without_tests(rust(&rooms));
-    // Boxes of the tiles of meshes are oriented, whatever volume is chosen.
+    // Boxes of the tiles of meshes are oriented with any volume.
     sources.retain(|(name, _)| name != "host/pipeline/instances/oriented.rs");
     for (_, text) in &mut sources {
         text.truncate(text.find("#[cfg(test)]\nmod tests").unwrap_or(text.len()));

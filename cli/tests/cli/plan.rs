@@ -26,8 +26,8 @@ fn the_tables_add_up() {
             plan["launches"].as_u64().expect("a sum")
         );
         assert_eq!(sum(&plan["buffers"], |buffer| &buffer["bytes"]), plan["bytes"].as_u64().expect("a sum"));
-        // Instances have a pose each, fixed ones too; queries of features have two more.
-        let (poses, uploads) = if question[0] == "--discrete" { (128, 1) } else { (384, 2) };
+        // Instances have two poses each, fixed ones too.
+        let (poses, uploads) = (256, 1);
         let placing = "  no placing of vertices: vertices are placed as they are read\n";
         let up = plan["transfers"].as_array().expect("transfers").iter();
         let up = up.filter(|moved| moved["what"] == "poses of rigid bodies");
