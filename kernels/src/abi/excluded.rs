@@ -119,7 +119,7 @@ impl RestReach {
     /// Whether the distance at rest excludes no pair of features of these two vertices.
     ///
     /// Rounding is monotone: a computed difference exceeds the computed sum only if the exact one
-    /// does. Then the features are farther apart on some axis than `within` and [`LONGER`] of all
+    /// does. Then the features are farther apart on some axis than `within` and `LONGER` of all
     /// lengths. So no computed distance is less than `within` ([`crate::prim::near`]).
     #[inline(always)]
     pub fn is_apart(&self, other: &Self) -> bool {
