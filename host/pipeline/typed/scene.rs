@@ -250,22 +250,19 @@ impl<R: Precision> SceneMemory<R> {
         bodies: &[Body],
         (layout, kind): (&Layout, QueryKind),
     ) -> Result<(), Error> {
-        let mut instances = match self.instances.take() {
-            Some(mut instances) => {
-                // The host may have poses of a download, which no update named.
-                if instances.differ(bodies) {
-                    instances.put(&self.device, bodies)?;
-                }
-                instances
-            }
-            None => self.new_instances(bodies)?,
-        };
+        if self.instances.is_none() {
+            self.instances = Some(self.new_instances(bodies)?);
+        }
+        let Some(instances) = &mut self.instances else { return Ok(()) };
+        // The host may have poses of a download, which no update named.
+        if instances.differ(bodies) {
+            instances.put(&self.device, bodies)?;
+        }
         if kind.is_of_features() {
             instances.ready_motion(&self.device, (bodies, layout), kind.is_at_rest())?;
         } else {
             instances.ready_boxes(&self.device)?;
         }
-        let instances = self.instances.insert(instances);
         let deform = instances.deform();
         // Meshes that deform are refitted to vertices in the scene.
         if deform { self.ready(true) } else { Ok(()) }
