@@ -88,7 +88,7 @@ def test_arrays_that_cannot_be_read_in_place_are_refused():
         ((names(), positions[:, ::-1], quaternions), "read in place"),
         ((names(), positions[:-1], quaternions), "rows"),
         ((names()[:-1] + ["fixed"], positions, quaternions), "fixed"),
-        ((names()[:-1] + ["nobody"], positions, quaternions), "nobody"),
+        ((names()[:-1] + ["ball 99"], positions, quaternions), "ball 99"),
         ((names()[:-1] + names()[:1], positions, quaternions), "second time"),
     ]:
         with pytest.raises(nm.NearmissError, match=said):

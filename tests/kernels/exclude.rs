@@ -163,7 +163,7 @@ fn is_wrong([own, other]: [RestReach; 2], [p, q]: &[[Vec3<f64>; 3]; 2], within: 
             || Nearest::meeting(p, q).distance < within)
 }
 
-/// Two triangles, whose reaches touch but for some roundings, and the distance.
+/// Two triangles whose reaches almost touch, and the distance.
 fn at_border(r: &mut SmallRng) -> ([[Vec3<f64>; 3]; 2], f64) {
     let scale = [1.0, 1e-3, 1e6, 1e-42, 1e30][r.random_range(0..5_usize)];
     let size = [1.0, 1e-3, 0.0][r.random_range(0..3_usize)];

@@ -22,7 +22,7 @@ pub const LEFT: [OfKinds; 2] = [
     ],
 ];
 
-/// The lists of a query of what approaches, in the order of [`Approaching::lists`].
+/// The lists of a query of what approaches, in the order of [`Approaching`].
 const APPROACHING: [OfKinds; 5] = [
     [
         ("narrow: vf beyond at the start", "vertex/face pairs beyond at the start", counter::VF_BEGIN_BEYOND),
