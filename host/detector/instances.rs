@@ -62,9 +62,7 @@ impl Detector {
         let may_read = query.may_read_instances() && !is_thick;
         let reads = is_of_bodies || self.engine.has_instances && may_read;
         if !reads && !self.engine.has_vertices {
-            // Poses that only the device has are downloaded before its memory is freed.
-            self.download_positions()?;
-            self.engine.drop_pipeline();
+            self.leave_pipeline()?;
             self.engine.has_vertices = true;
         }
         Ok(reads)

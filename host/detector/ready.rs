@@ -104,8 +104,7 @@ impl Detector {
         let in_motion = !question.query.kind().is_at_rest();
         if in_motion && !self.engine.has_ends {
             // A pipeline of queries at rest has no room for the end of the step.
-            self.download_positions()?;
-            self.engine.drop_pipeline();
+            self.leave_pipeline()?;
             self.engine.has_ends = true;
         }
         let is_of_instances = self.reads_instances(&question.query)?;
@@ -124,6 +123,16 @@ impl Detector {
             self.engine.build_work = self.device.work();
         }
         Ok(Some(at))
+    }
+
+    /// Drops the pipeline. Positions that only the device has are downloaded before its memory is freed.
+    ///
+    /// # Errors
+    /// As of [`Detector::download_positions`].
+    pub(super) fn leave_pipeline(&mut self) -> Result<(), Error> {
+        self.download_positions()?;
+        self.engine.drop_pipeline();
+        Ok(())
     }
 
     /// Takes the memory of the scene, if there is none and something may meet.
@@ -158,9 +167,7 @@ impl Detector {
             return Err(error);
         }
         if self.engine.pipeline.is_some() {
-            // Positions that only the device has are downloaded before its memory is freed.
-            self.download_positions()?;
-            self.engine.drop_pipeline();
+            self.leave_pipeline()?;
         }
         self.portion.slice_finer(query);
         Ok(())

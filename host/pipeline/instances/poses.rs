@@ -107,10 +107,13 @@ impl Poses {
                     first.push(PoseSource { from: RESTING, ..source });
                     self.moves[at] = false;
                 }
-            } else if self.differs(at, body) {
-                first.push(PoseSource { from: POSED, at: uploads.len() as u32, ends: 2, ..source });
-                uploads.extend(poses(body));
-                self.held[2 * at..2 * at + 2].copy_from_slice(&poses(body));
+            } else {
+                let own = poses(body);
+                if self.differs(at, &own) {
+                    first.push(PoseSource { from: POSED, at: uploads.len() as u32, ends: 2, ..source });
+                    uploads.extend(own);
+                    self.held[2 * at..2 * at + 2].copy_from_slice(&own);
+                }
             }
             self.there[at] = is_there(body);
         }
@@ -162,15 +165,14 @@ impl Poses {
 
     /// Whether the device has another pose than the host. By bytes: the sign of a zero may change the
     /// bits of a placed vertex.
-    fn differs(&self, at: usize, body: &Body) -> bool {
-        let own = poses(body);
+    fn differs(&self, at: usize, own: &[PoseRecord; 2]) -> bool {
         let held = self.held.get(2 * at..2 * at + 2).unwrap_or_default();
-        self.there[at] || bytemuck::cast_slice::<_, u8>(held) != bytemuck::bytes_of(&own)
+        self.there[at] || bytemuck::cast_slice::<_, u8>(held) != bytemuck::bytes_of(own)
     }
 
     /// Returns whether the host has poses that the device has not.
     pub fn differ(&self, bodies: &[Body]) -> bool {
-        bodies.iter().enumerate().any(|(at, body)| !is_there(body) && self.differs(at, body))
+        bodies.iter().enumerate().any(|(at, body)| !is_there(body) && self.differs(at, &poses(body)))
     }
 
     /// Returns the poses, for kernels.

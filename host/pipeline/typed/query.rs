@@ -159,7 +159,7 @@ impl<R: Precision> QueryMemory<R> {
         } else {
             scene.ready(self.is_at_rest())?;
         }
-        let growth = self.growth(self.is_of_instances || scene.vertices.turns());
+        let growth = self.growth(scene);
         let broad = &mut scene.broads[self.broad];
         let grows = broad.phase.set_growth(growth);
         broad.is_built &= !grows;
@@ -169,7 +169,8 @@ impl<R: Precision> QueryMemory<R> {
     /// Returns the growth of the volumes. A pair that turns may stay undecided within half a
     /// tolerance, and is then a candidate of every volume. Boxes of instances are of the meshes' frames:
     /// any pair that may stay undecided is to be a candidate.
-    pub fn growth(&self, turns: bool) -> Growth {
+    pub fn growth(&self, scene: &SceneMemory<R>) -> Growth {
+        let turns = self.is_of_instances || scene.vertices.turns();
         let tolerance = self.query.certified().and_then(|certified| certified.tolerance);
         let margin = growth(self.query.listed_within() + tolerance.filter(|_| turns).unwrap_or(0.0));
         let is_thick = self.layout.is_thick() && self.query.kind().is_of_features();

@@ -263,9 +263,8 @@ impl<R: Precision> QueryMemory<R> {
         submitted: &mut Submitted,
         seen: Span<u64>,
     ) -> Result<(), Error> {
-        scene.broads[self.broad]
-            .phase
-            .set_growth(self.growth(self.is_of_instances || scene.vertices.turns()));
+        let growth = self.growth(scene);
+        scene.broads[self.broad].phase.set_growth(growth);
         scene.device.beside(|| self.counters.clear())?;
         [Stage::Fit, Stage::Refit].into_iter().try_for_each(|stage| self.run(scene, stage))?;
         scene.device.join();
