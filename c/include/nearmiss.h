@@ -201,7 +201,7 @@ enum NearmissEntries
     NEARMISS_NEAREST = 3,
     // `NearmissDevicePair`: two bodies that share a point, by their places in the scene. In no
     // order.
-    NEARMISS_BODY_PAIRS = 4,
+    NEARMISS_PAIRS_OF_BODIES = 4,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L

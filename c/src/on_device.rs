@@ -24,7 +24,7 @@ pub enum NearmissEntries {
     NEARMISS_NEAREST = 3,
     /// `NearmissDevicePair`: two bodies that share a point, by their places in the scene. In no
     /// order.
-    NEARMISS_BODY_PAIRS = 4,
+    NEARMISS_PAIRS_OF_BODIES = 4,
 }
 
 /// A list in memory of the device.
@@ -183,7 +183,7 @@ impl NearmissDetector {
             Entries::Contacts => NearmissEntries::NEARMISS_CONTACTS,
             Entries::NearPairs => NearmissEntries::NEARMISS_NEAR_PAIRS,
             Entries::Nearest => NearmissEntries::NEARMISS_NEAREST,
-            Entries::BodyPairs => NearmissEntries::NEARMISS_BODY_PAIRS,
+            Entries::BodyPairs => NearmissEntries::NEARMISS_PAIRS_OF_BODIES,
             other => return Err(Error::Bug { what: format!("entries {other:?} without a name in C") }),
         };
         let mut both = [NearmissDeviceList::default(); 2];

@@ -133,6 +133,22 @@ fn no_name_of_an_earlier_header_is_left() {
     }
 }
 
+/// A name that two values have: in C, names of all enums are of one space.
+fn name_of_two_values(list: &str) -> Option<&str> {
+    let mut names = std::collections::BTreeSet::new();
+    let mut values = list.lines().filter_map(|line| line.strip_prefix("value ")?.split(' ').nth(1));
+    values.find(|&name| !names.insert(name))
+}
+
+#[test]
+fn no_two_values_have_one_name() {
+    let list = Layout::of(&made()).list();
+    assert!(list.contains("value NearmissQueryKind NEARMISS_NEAR 3\n"));
+    assert_eq!(name_of_two_values(&list), None);
+    let planted = list.replace("NEARMISS_NEAREST 3", "NEARMISS_NEAR 3");
+    assert_eq!(name_of_two_values(&planted), Some("NEARMISS_NEAR"));
+}
+
 /// The first line that is wider than 100 columns.
 fn wide_line(header: &str) -> Option<&str> {
     header.lines().find(|line| line.starts_with(['/', ' ']) && line.chars().count() > 100)
