@@ -2,6 +2,7 @@
 //! of them.
 
 mod bound;
+mod made;
 mod steps;
 
 use super::answer::rows_of;
@@ -10,18 +11,18 @@ use super::features::Features;
 use super::rungs::Rungs;
 use super::start::StartCheck;
 use super::turning::Turning;
-use super::{AnswerLists, Capacities, Narrow, NarrowContext, RowSpans, growable};
+use super::{AnswerLists, Narrow, NarrowContext, RowSpans, growable};
 use crate::contacts::Entries;
 use crate::device::{Ahead, Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::below_precision::{self, BelowPrecision};
 use crate::pipeline::counts::Counts;
+use crate::pipeline::launch;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{GrowableOutput, List, Named, named};
 use crate::pipeline::order::{Order, Ordering, Unordered};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
-use crate::pipeline::{launch, purpose};
 use crate::query::{self, Certified, ContinuousSolver, Query};
 use crate::scene::Body;
 use nearmiss_kernels::abi::rows::code;
@@ -65,89 +66,6 @@ pub struct ContinuousNarrow {
 }
 
 impl ContinuousNarrow {
-    /// Allocates the phase for all contacts.
-    ///
-    /// # Errors
-    /// Device errors.
-    pub fn all(device: &Device, solver: ContinuousSolver, few: usize) -> Result<Self, Error> {
-        ContinuousNarrow::new(device, solver, Capacities::usual(few))
-    }
-
-    /// Allocates the phase for the smallest time alone.
-    ///
-    /// # Errors
-    /// Device errors.
-    pub fn first(device: &Device, solver: ContinuousSolver, few: usize) -> Result<Self, Error> {
-        let capacities = Capacities { hits: [0, 0], ..Capacities::usual(few) };
-        let narrow = ContinuousNarrow::new(device, solver, capacities)?;
-        Ok(ContinuousNarrow {
-            earliest: Some(device.of(purpose::EARLIEST).buffer(earliest::WORDS as usize)?),
-            ..narrow
-        })
-    }
-
-    /// Allocates the lists with these capacities.
-    ///
-    /// # Errors
-    /// Device errors.
-    pub fn new(device: &Device, solver: ContinuousSolver, capacities: Capacities) -> Result<Self, Error> {
-        let lists = |[vf, ee]: [&'static str; 2], [vf_at, ee_at]: [Counter; 2], capacity: [usize; 2]| {
-            Ok::<_, Error>([
-                List::new(device, vf, vf_at, capacity[0])?,
-                List::new(device, ee, ee_at, capacity[1])?,
-            ])
-        };
-        let may_meet = ["vertex/face pairs that may meet", "edge/edge pairs that may meet"];
-        let survivors =
-            || lists(may_meet, [counter::VF_SURVIVORS, counter::EE_SURVIVORS], capacities.survivors);
-        let is_apart = solver.certified().is_some_and(Certified::is_apart);
-        Ok(ContinuousNarrow {
-            solver,
-            start: None,
-            survivors: (!is_apart).then(survivors).transpose()?,
-            kept: None,
-            vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, capacities.hits[0])?,
-            ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, capacities.hits[1])?,
-            rungs: Rungs::new(device, solver.certified(), &capacities)?,
-            turning: Turning::new(device)?,
-            counters: [
-                counter::VF_OPEN,
-                counter::EE_OPEN,
-                counter::UNDECIDED,
-                counter::ENDED,
-                counter::ENDED_UNDECIDED,
-                counter::BELOW_PRECISION,
-            ],
-            finest: None,
-            below_precision: None,
-            is_thick: false,
-            earliest: None,
-            bound: None,
-            ordered: None,
-        })
-    }
-
-    /// Makes it a phase of vertices with a thickness, if they have one.
-    ///
-    /// # Errors
-    /// Device errors.
-    pub fn of_thick(mut self, device: &Device, layout: &Layout) -> Result<Self, Error> {
-        self.is_thick = layout.is_thick();
-        if layout.is_uneven {
-            self.rungs.thicken(device, &layout.radii)?;
-        }
-        Ok(self)
-    }
-
-    /// Adds the check of the start: it counts crossing pairs, with room for `few` pairs that
-    /// filters leave uncertain.
-    ///
-    /// # Errors
-    /// Device errors.
-    pub fn checking_start<R: Precision>(self, device: &Device, few: usize) -> Result<Self, Error> {
-        Ok(ContinuousNarrow { start: Some(StartCheck::new::<R>(device, few)?), ..self })
-    }
-
     /// Returns whether its contacts are proven.
     fn is_certified(&self) -> bool {
         self.solver.certified().is_some()

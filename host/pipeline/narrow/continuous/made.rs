@@ -1,0 +1,100 @@
+//! How the phase is made: for all contacts, or for the first.
+
+use super::ContinuousNarrow;
+use crate::device::Device;
+use crate::error::Error;
+use crate::pipeline::layout::Layout;
+use crate::pipeline::list::List;
+use crate::pipeline::narrow::Capacities;
+use crate::pipeline::narrow::rungs::Rungs;
+use crate::pipeline::narrow::start::StartCheck;
+use crate::pipeline::narrow::turning::Turning;
+use crate::pipeline::precision::Precision;
+use crate::pipeline::purpose;
+use crate::query::{Certified, ContinuousSolver};
+use nearmiss_kernels::abi::{Counter, counter, earliest};
+
+impl ContinuousNarrow {
+    /// Allocates the phase for all contacts.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn all(device: &Device, solver: ContinuousSolver, few: usize) -> Result<Self, Error> {
+        ContinuousNarrow::new(device, solver, Capacities::usual(few))
+    }
+
+    /// Allocates the phase for the smallest time alone.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn first(device: &Device, solver: ContinuousSolver, few: usize) -> Result<Self, Error> {
+        let capacities = Capacities { hits: [0, 0], ..Capacities::usual(few) };
+        let narrow = ContinuousNarrow::new(device, solver, capacities)?;
+        Ok(ContinuousNarrow {
+            earliest: Some(device.of(purpose::EARLIEST).buffer(earliest::WORDS as usize)?),
+            ..narrow
+        })
+    }
+
+    /// Allocates the lists with these capacities.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn new(device: &Device, solver: ContinuousSolver, capacities: Capacities) -> Result<Self, Error> {
+        let lists = |[vf, ee]: [&'static str; 2], [vf_at, ee_at]: [Counter; 2], capacity: [usize; 2]| {
+            Ok::<_, Error>([
+                List::new(device, vf, vf_at, capacity[0])?,
+                List::new(device, ee, ee_at, capacity[1])?,
+            ])
+        };
+        let may_meet = ["vertex/face pairs that may meet", "edge/edge pairs that may meet"];
+        let survivors =
+            || lists(may_meet, [counter::VF_SURVIVORS, counter::EE_SURVIVORS], capacities.survivors);
+        let is_apart = solver.certified().is_some_and(Certified::is_apart);
+        Ok(ContinuousNarrow {
+            solver,
+            start: None,
+            survivors: (!is_apart).then(survivors).transpose()?,
+            kept: None,
+            vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, capacities.hits[0])?,
+            ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, capacities.hits[1])?,
+            rungs: Rungs::new(device, solver.certified(), &capacities)?,
+            turning: Turning::new(device)?,
+            counters: [
+                counter::VF_OPEN,
+                counter::EE_OPEN,
+                counter::UNDECIDED,
+                counter::ENDED,
+                counter::ENDED_UNDECIDED,
+                counter::BELOW_PRECISION,
+            ],
+            finest: None,
+            below_precision: None,
+            is_thick: false,
+            earliest: None,
+            bound: None,
+            ordered: None,
+        })
+    }
+
+    /// Makes it a phase of vertices with a thickness, if they have one.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn of_thick(mut self, device: &Device, layout: &Layout) -> Result<Self, Error> {
+        self.is_thick = layout.is_thick();
+        if layout.is_uneven {
+            self.rungs.thicken(device, &layout.radii)?;
+        }
+        Ok(self)
+    }
+
+    /// Adds the check of the start: it counts crossing pairs, with room for `few` pairs that
+    /// filters leave uncertain.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn checking_start<R: Precision>(self, device: &Device, few: usize) -> Result<Self, Error> {
+        Ok(ContinuousNarrow { start: Some(StartCheck::new::<R>(device, few)?), ..self })
+    }
+}
