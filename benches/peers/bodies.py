@@ -149,8 +149,8 @@ class Fcl:
 
 class Nearmiss:
     def __init__(self, meshes, which, threads):
-        bodies = [nearmiss.Body.rigid(*meshes[k], name=str(at)) for at, k in enumerate(which)]
-        self.detector = nearmiss.Detector(bodies, device=nearmiss.Device("cpu", threads=threads))
+        bodies = [nearmiss.Body(*meshes[k], kind="rigid", name=str(at)) for at, k in enumerate(which)]
+        self.detector = nearmiss.Detector(nearmiss.Scene(*bodies), device=nearmiss.Device("cpu", threads=threads))
         self.bodies = np.arange(len(which), dtype=np.uint32)
         self.name = f"nearmiss, {threads} thread" + "s" * (threads > 1)
 
