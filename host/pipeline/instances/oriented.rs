@@ -4,6 +4,7 @@ use nearmiss_kernels::abi::{MeshLeaf, MeshTriangle, NONE, TileBox};
 use nearmiss_kernels::bv::Obb;
 use nearmiss_kernels::bvh::tiles::TILE;
 use nearmiss_kernels::math::Vec3;
+use rayon::prelude::*;
 
 type Vector = Vec3<f64>;
 
@@ -17,7 +18,7 @@ const MOST_TURNS: u32 = 24;
 /// Fits a box to each tile: of its triangles' corners, as they are stored. Tiles that are `refitted`
 /// have one around everything.
 pub fn fit(triangles: &[MeshTriangle], leaves: &[MeshLeaf], refitted: &[u32]) -> Vec<TileBox> {
-    let tiles = triangles.chunks(TILE as usize).zip(leaves.chunks(TILE as usize));
+    let tiles = triangles.par_chunks(TILE as usize).zip(leaves.par_chunks(TILE as usize));
     let mut all: Vec<TileBox> = tiles.map(|(triangles, leaves)| of_tile(triangles, leaves)).collect();
     refitted.iter().for_each(|&tile| all[tile as usize] = TileBox::EVERYTHING);
     all
