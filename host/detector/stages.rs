@@ -37,7 +37,7 @@ impl Detector {
         if matches!(stage, Stage::Traverse | Stage::Narrow | Stage::Order) {
             self.have_answered(&question)?;
         }
-        let is_answered = self.engine.answered == Some(*query);
+        let is_answered = self.engine.answered == Some(question.query);
         let Some(at) = self.begun(&question)? else { return Ok(Vec::new()) };
         let Some(pipeline) = &mut self.engine.pipeline else { return Ok(Vec::new()) };
         if !is_answered && stage == Stage::Refit {
@@ -79,8 +79,12 @@ impl Detector {
         what: impl FnOnce(&mut dyn Pipeline, usize) -> Result<T, Error>,
     ) -> Result<T, Error> {
         start_threads()?;
+        if self.engine.pipeline.is_none() {
+            return Ok(none);
+        }
+        let (query, _) = self.thickened(*query)?;
         let Some(pipeline) = &mut self.engine.pipeline else { return Ok(none) };
-        match pipeline.place_of(query) {
+        match pipeline.place_of(&query) {
             Some(at) => what(&mut **pipeline, at),
             None => Ok(none),
         }

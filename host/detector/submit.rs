@@ -107,11 +107,12 @@ impl Detector {
         // Once before the rounds. Then lists that queries share have the longest length, and there
         // is a front that a submission can continue from.
         self.answer_whole(&questions)?;
+        let tested: Vec<Query> = questions.iter().map(|question| question.query).collect();
         until_whole(|| {
             self.answer_whole(&questions)?;
-            self.try_submission(&given, queries, extras)
+            self.try_submission(&given, &tested, extras)
         })?;
-        self.placed.submit(motions, queries);
+        self.placed.submit(motions, queries.iter().copied().zip(tested).map(<[Query; 2]>::from).collect());
         self.engine.submits_alone = self.engine.pipeline.is_none();
         Ok(())
     }
@@ -209,8 +210,8 @@ impl Detector {
     /// Returns the addresses of the answer to a submitted query, for the caller's kernels that
     /// follow on the stream. `None` if the query is not prepared, or if nothing can meet.
     pub fn on_device(&self, query: &Query) -> Option<DeviceAnswer> {
-        let pipeline = self.engine.pipeline.as_ref().filter(|_| self.placed.answers(query))?;
-        pipeline.place_of(query).and_then(|at| pipeline.answer(at))
+        let (pipeline, tested) = (self.engine.pipeline.as_ref()?, self.placed.tested(query)?);
+        pipeline.place_of(tested).and_then(|at| pipeline.answer(at))
     }
 
     /// Waits for the last submission, or for the last launch of its recording. Returns the answer to
@@ -233,17 +234,17 @@ impl Detector {
         let question = self.question(query)?;
         let layout = self.layout(&query)?;
         self.read_again(true);
-        let answers = self.placed.answers(&query);
-        let found = match &mut self.engine.pipeline {
-            Some(pipeline) => {
-                let place = pipeline.place_of(&query).filter(|_| answers);
-                place.map_or(Ok(None), |at| pipeline.collect(at))?
+        let tested = self.placed.tested(&query).filter(|&&tested| tested == question.query);
+        let found = match (&mut self.engine.pipeline, tested) {
+            (Some(pipeline), Some(tested)) => {
+                pipeline.place_of(tested).map_or(Ok(None), |at| pipeline.collect(at))?
             }
-            None => None,
+            _ => None,
         };
         let whole = found.map(|found| {
             let seen = found.0.seen;
-            collect(found, &query, &layout, &self.device.looks()).map(|contacts| Answered { contacts, seen })
+            collect(found, &question.query, &layout, &self.device.looks())
+                .map(|contacts| Answered { contacts, seen })
         });
         match whole.transpose()? {
             Some(answered) if self.check_seen(answered.seen)? => {

@@ -7,6 +7,7 @@ mod inputs;
 mod left_out;
 mod refusals;
 mod schedules;
+mod thick;
 
 use nearmiss::contacts::on_device::FrameStatus;
 use nearmiss::device::Buffer;

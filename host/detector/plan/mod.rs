@@ -205,7 +205,7 @@ impl Detector {
         let question = self.question(*query)?;
         let begun = self.begun(&question).map(|at| at.is_some());
         if self.ended(begun)? {
-            while !self.engine.has_run_twice(query) {
+            while !self.engine.has_run_twice(&question.query) {
                 self.query(query)?;
             }
         }
