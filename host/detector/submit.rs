@@ -104,10 +104,12 @@ impl Detector {
         self.apply(&given, in_motion)?;
         self.has_geometry_on_device(in_motion, extras)?;
         let questions = queries.iter().map(|&query| self.question(query)).collect::<Result<Vec<_>, _>>()?;
+        let tested: Vec<Query> = questions.iter().map(|question| question.query).collect();
+        // With a thickness, a query with a separation and one without have one shape.
+        check_submission(&tested)?;
         // Once before the rounds. Then lists that queries share have the longest length, and there
         // is a front that a submission can continue from.
         self.answer_whole(&questions)?;
-        let tested: Vec<Query> = questions.iter().map(|question| question.query).collect();
         until_whole(|| {
             self.answer_whole(&questions)?;
             self.try_submission(&given, &tested, extras)

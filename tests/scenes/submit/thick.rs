@@ -43,6 +43,10 @@ fn a_step_of_thick_bodies_is_found_by_its_query() {
             detector.prepare(&[(id, input)], &queries).expect("prepared");
         }
     }
+    let apart = support::asked::certified(queries[0], |own| own.min_separation = 0.01);
+    let error = detector.prepare(&[(id, input)], &[queries[0], apart]).expect_err("one shape").to_string();
+    assert!(error.contains("differ in more than numbers"), "{error}");
+    detector.prepare(&[(id, input)], &queries).expect("prepared");
     for query in &queries {
         assert!(detector.on_device(&query.with_broad_phase(nearmiss::research::BroadPhase::Tree)).is_none());
         by_host.query(query).expect("an answer");
