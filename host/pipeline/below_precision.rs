@@ -82,8 +82,11 @@ impl BelowPrecision {
         let boxes: Vec<Bounds> = bodies.iter().map(bounds).collect();
         let large = (0..bodies.len()).filter(|&i| is_long(extent(&boxes[i]), least));
         let long: Vec<(usize, f64)> = large.map(|i| (i, longest_side(&bodies[i]))).collect();
-        let within = certified.min_separation + certified.tolerance.unwrap_or(0.0);
-        let meets = |i: usize, j: usize| layout.tests(i, j) && are_near([&boxes[i], &boxes[j]], within);
+        let apart = certified.min_separation + certified.tolerance.unwrap_or(0.0);
+        let within = |i: usize, j: usize| {
+            apart + [i, j].map(|body| bodies[body].thickness().largest()).iter().sum::<f64>()
+        };
+        let meets = |i: usize, j: usize| layout.tests(i, j) && are_near([&boxes[i], &boxes[j]], within(i, j));
         let has_partner = |(i, side): (usize, f64)| {
             let mut others = (0..bodies.len()).filter(|&j| is_long(side, tolerance(&bodies[i], &bodies[j])));
             others.any(|j| meets(i, j))
@@ -202,4 +205,35 @@ fn of_points<T: Copy + Into<f64> + Sync>(points: &[[T; 3]]) -> Bounds {
         piece.iter().map(|p| p.map(Into::into)).fold(NOTHING, |bounds, p| union(bounds, [p, p]))
     };
     points.par_chunks(1 << 13).map(of).reduce(|| NOTHING, union)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Mesh;
+    use crate::query::QueryKind;
+    use crate::scene::CollisionFilter;
+
+    /// The caveat of two long triangles that are 100 apart, with these radii.
+    fn of_apart(radii: [f64; 2]) -> Option<BelowPrecision> {
+        let body = |z: f64, radius: f64| {
+            let corners = vec![[0.0, 0.0, z], [1e6, 0.0, z], [0.0, 1e6, z]];
+            let mesh = Mesh::new("long", Positions::F64(corners), vec![[0, 1, 2]]).expect("a mesh");
+            let filter = CollisionFilter::without_self_collision();
+            Body::deformable(mesh).with_filter(filter).with_thickness(radius)
+        };
+        // The boxes of bodies grow by a part of their largest coordinate.
+        let bodies = [body(0.0, radii[0]), body(100.0, radii[1])];
+        let layout = Layout::new(&bodies, QueryKind::Earliest);
+        let certified = Certified { tolerance: Some(1e-9), ..Certified::default() };
+        BelowPrecision::of_earliest((&bodies, &layout), &certified, false)
+    }
+
+    #[test]
+    fn a_thickness_is_part_of_the_tested_distance() {
+        assert_eq!(of_apart([0.0; 2]), None);
+        assert_eq!(of_apart([10.0, 10.0]), None);
+        assert_eq!(of_apart([100.0, 0.0]), Some(BelowPrecision::Unlisted));
+        assert_eq!(of_apart([0.0, 100.0]), Some(BelowPrecision::Unlisted));
+    }
 }
