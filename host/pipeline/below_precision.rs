@@ -211,7 +211,7 @@ fn of_points<T: Copy + Into<f64> + Sync>(points: &[[T; 3]]) -> Bounds {
 mod tests {
     use super::*;
     use crate::mesh::Mesh;
-    use crate::query::QueryKind;
+    use crate::query::Query;
     use crate::scene::CollisionFilter;
 
     /// The caveat of two long triangles that are 100 apart, with these radii.
@@ -224,7 +224,7 @@ mod tests {
         };
         // The boxes of bodies grow by a part of their largest coordinate.
         let bodies = [body(0.0, radii[0]), body(100.0, radii[1])];
-        let layout = Layout::new(&bodies, QueryKind::Earliest);
+        let layout = Layout::new(&bodies, Query::earliest().kind());
         let certified = Certified { tolerance: Some(1e-9), ..Certified::default() };
         BelowPrecision::of_earliest((&bodies, &layout), &certified, false)
     }
