@@ -18,7 +18,8 @@ pub struct Placed {
     lacks_ends: bool,
     /// Motions that a submission reads; up to date while one is prepared.
     pub submitted: Vec<(BodyId, DeviceMotion)>,
-    /// Queries of a submission; up to date while one is prepared.
+    /// Queries of a submission, as they are given and as they are tested; up to date while one is
+    /// prepared.
     queries: Vec<[Query; 2]>,
 }
 
@@ -71,7 +72,7 @@ impl Placed {
         self.queries.iter().find(|[given, _]| given == query).map(|[_, tested]| tested)
     }
 
-    /// Records the bodies and the queries of submissions, as they are given and as they are tested.
+    /// Records the bodies and the queries of submissions.
     pub fn submit(&mut self, inputs: &[(BodyId, DeviceMotion)], queries: Vec<[Query; 2]>) {
         (self.submitted, self.queries) = (inputs.to_vec(), queries);
     }

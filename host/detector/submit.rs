@@ -236,12 +236,13 @@ impl Detector {
         let question = self.question(query)?;
         let layout = self.layout(&query)?;
         self.read_again(true);
-        let tested = self.placed.tested(&query).filter(|&&tested| tested == question.query);
-        let found = match (&mut self.engine.pipeline, tested) {
-            (Some(pipeline), Some(tested)) => {
-                pipeline.place_of(tested).map_or(Ok(None), |at| pipeline.collect(at))?
+        let answers = self.placed.tested(&query) == Some(&question.query);
+        let found = match &mut self.engine.pipeline {
+            Some(pipeline) => {
+                let place = pipeline.place_of(&question.query).filter(|_| answers);
+                place.map_or(Ok(None), |at| pipeline.collect(at))?
             }
-            _ => None,
+            None => None,
         };
         let whole = found.map(|found| {
             let seen = found.0.seen;

@@ -13,8 +13,8 @@ SCRIPT = Path(__file__).parents[2] / "benches" / "peers" / "bodies.py"
 
 
 def difference(rows):
-    """The first question to which two programs have another count. Coal counts contacts of triangles
-    as it likes: it lists some pairs twice."""
+    """The first question to which two programs have another count. Coal's count of triangles is left
+    out: it differs a little."""
     first = {}
     for row in rows:
         is_coal_of_triangles = row["program"].startswith("Coal") and row["question"] == "crossing triangles"
