@@ -217,7 +217,7 @@ kernels! {
     narrow_approach_advance_f64: approach::advance::<f64, B>, [ThickRungArgs<f64>], SPREAD, 0;
     narrow_divide: divide::divide, [DivideArgs], WIDE, 0;
     narrow_turning_features: turning::features, [TurningFeaturesArgs], turning::LANES, turning::SHARED;
-    narrow_turning: turning::solve, [TurningArgs], NARROW, 0;
+    narrow_turning: turning::solve, [TurningArgs], SPREAD, 0;
     narrow_near_f32: near::near::<f32, B>, [NearArgs<f32>], RUNG, 0, registers = 64;
     narrow_near_f64: near::near::<f64, B>, [NearArgs<f64>], RUNG, 0;
     narrow_near_thick_f32: near::thick::thick::<f32, B>, [ThickNearArgs<f32>], RUNG, 0, registers = 80;

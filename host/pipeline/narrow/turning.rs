@@ -181,6 +181,6 @@ impl Turning {
             pad: 0,
         };
         let pairs: usize = tested.into_iter().map(List::capacity).sum();
-        launch::striding::<narrow_turning>(given.device, pairs, &TurningArgs { rung, rest })
+        launch::at_once::<narrow_turning>(given.device, pairs, &TurningArgs { rung, rest })
     }
 }

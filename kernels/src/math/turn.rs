@@ -11,7 +11,7 @@ use super::root::sqrt64;
 use super::tolerance::turning::{TURN_FAINT, TURN_UP};
 
 /// A turn by a rotation vector in the time from 0 to 1.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Turn {
     phi: Vec3<f64>,
     /// Half the angle.

@@ -5,7 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use core::ops::{Add, Index, Mul, Neg, Sub};
 
 /// A point or a vector, as in memory: three scalars, no padding.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(transparent)]
 pub struct Vec3<R>(pub [R; 3]);
 

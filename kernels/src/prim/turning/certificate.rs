@@ -26,6 +26,205 @@ const STEPS: u32 = 24;
 /// Lengths of the certain contact's time that are tried, at most.
 const LENGTHS: u32 = 10;
 
+/// A search for a certain contact between two times. It needs one place a turn.
+#[derive(Clone, Copy, Debug)]
+pub struct Search<const N: usize> {
+    /// The time of the place that it needs next.
+    pub wanted: f64,
+    /// Times and volumes at both ends.
+    ends: [(f64, f64); 2],
+    /// Times and volumes about the root, and the numbers that weigh the next one.
+    around: [(f64, f64); 2],
+    weights: [f64; 2],
+    /// The end that moved last: 1 or 2.
+    moved: u32,
+    /// Steps to the root, then lengths that were tried.
+    steps: u32,
+    seek: Seek,
+    /// Half of the length that is tried, and of the least one.
+    half: f64,
+    least: f64,
+    tolerance: f64,
+    speed: f64,
+    root: Place<N>,
+    /// The place before the root.
+    before: Place<N>,
+}
+
+/// The place that a search needs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Seek {
+    Root,
+    Before,
+    After,
+}
+
+/// The result of a turn of a search.
+#[derive(Clone, Copy, Debug)]
+pub enum Turn {
+    /// It needs another place.
+    More,
+    /// It ended with a contact, or without one.
+    End(Option<Contact>),
+}
+
+impl<const N: usize> Search<N> {
+    /// A search that has not begun.
+    pub const NONE: Self = Search {
+        wanted: 0.0,
+        ends: [(0.0, 0.0); 2],
+        around: [(0.0, 0.0); 2],
+        weights: [0.0; 2],
+        moved: 0,
+        steps: 0,
+        seek: Seek::Root,
+        half: 0.0,
+        least: 0.0,
+        tolerance: 0.0,
+        speed: 0.0,
+        root: Place::NONE,
+        before: Place::NONE,
+    };
+
+    /// Begins between two places, if the volume has opposite signs at them and `failed`, a root that
+    /// is no contact as far as doubles can say, is not between.
+    #[inline(always)]
+    pub fn begin(
+        &mut self,
+        [from, to]: [&Place<N>; 2],
+        (tolerance, speed): (f64, f64),
+        failed: &mut f64,
+    ) -> bool {
+        if !(from.side() * to.side() < 0.0) || (from.t <= *failed && *failed <= to.t) {
+            return false;
+        }
+        self.ends = [(from.t, from.volume), (to.t, to.volume)];
+        (self.around, self.weights) = (self.ends, [from.volume, to.volume]);
+        (self.moved, self.steps, self.seek) = (0, 0, Seek::Root);
+        (self.tolerance, self.speed) = (tolerance, speed);
+        self.root = *from;
+        if !self.has_next() {
+            self.certify();
+        }
+        true
+    }
+
+    /// Sets the time at which the root is sought next, by the rule of false position in its Illinois
+    /// form, unless there is none.
+    #[inline(always)]
+    fn has_next(&mut self) -> bool {
+        let ([low, high], [a, b]) = (self.around, self.weights);
+        let t = low.0 + (high.0 - low.0) * (a / (a - b));
+        let t = if t > low.0 && t < high.0 { t } else { 0.5 * (low.0 + high.0) };
+        self.wanted = t;
+        self.steps < STEPS && t > low.0 && t < high.0
+    }
+
+    /// Goes on with a certificate about the root. The longest time is tried first: before a short
+    /// one lie more slices.
+    #[inline(always)]
+    fn certify(&mut self) {
+        let slope = |[a, b]: [(f64, f64); 2]| ((b.1 - a.1) / (b.0 - a.0)).abs();
+        let near = slope(self.around);
+        let slope = if near > 0.0 { near } else { slope(self.ends) };
+        self.least = 1.5 * self.root.error / slope + 4.0 * U64;
+        self.half = self.least.max(0.2 * self.tolerance / self.speed);
+        self.steps = 0;
+        self.seek_before();
+    }
+
+    #[inline(always)]
+    fn seek_before(&mut self) {
+        self.seek = Seek::Before;
+        self.wanted = self.ends[0].0.max(self.root.t - self.half);
+    }
+
+    /// Takes the place that it needs. Control vectors count as moved by `moved` of what they may
+    /// have moved: tests of the certificate make it less.
+    #[inline(always)]
+    pub fn turn(
+        &mut self,
+        motion: &Motion<N>,
+        place: &Place<N>,
+        failed: &mut f64,
+        moved: impl Fn(f64) -> f64,
+    ) -> Turn {
+        match self.seek {
+            Seek::Root => {
+                self.steps += 1;
+                self.root = *place;
+                if place.side() != 0.0 {
+                    let at = (place.t, place.volume);
+                    let [a, b] = self.weights;
+                    if (place.volume < 0.0) == (self.around[0].1 < 0.0) {
+                        self.around[0] = at;
+                        self.weights = [at.1, if self.moved == 1 { 0.5 * b } else { b }];
+                        self.moved = 1;
+                    } else {
+                        self.around[1] = at;
+                        self.weights = [if self.moved == 2 { 0.5 * a } else { a }, at.1];
+                        self.moved = 2;
+                    }
+                    // The features are farther apart than they move until the root: it is one of
+                    // their planes alone.
+                    let left = self.around[1].0 - self.around[0].0;
+                    if place.distance > self.speed * left + 4.0 * motion.error {
+                        return Turn::End(None);
+                    }
+                    if self.has_next() {
+                        return Turn::More;
+                    }
+                }
+                self.certify();
+                Turn::More
+            }
+            Seek::Before => {
+                self.before = *place;
+                self.seek = Seek::After;
+                self.wanted = self.ends[1].0.min(self.root.t + self.half);
+                Turn::More
+            }
+            Seek::After => self.proven(motion, place, failed, moved),
+        }
+    }
+
+    /// Whether the places on both sides of the root prove a contact.
+    #[inline(always)]
+    fn proven(
+        &mut self,
+        motion: &Motion<N>,
+        after: &Place<N>,
+        failed: &mut f64,
+        moved: impl Fn(f64) -> f64,
+    ) -> Turn {
+        let (before, root) = (&self.before, &self.root);
+        if !(before.t < after.t) {
+            return Turn::End(None);
+        }
+        let is_least = self.half <= self.least;
+        let mut is_over = false;
+        if before.side() * after.side() < 0.0 {
+            let far = (after.t - root.t).max(root.t - before.t) * TURN_UP;
+            let most = motion.bounds(before, after).speed * far + TURNING_CURVE * motion.error;
+            if root.holds(moved(most * TURN_UP)) {
+                return Turn::End(Some(Contact { from: before.t, to: after.t }));
+            }
+            is_over = is_least;
+        } else if is_least {
+            is_over = self.steps > 4;
+            self.least *= 4.0;
+        }
+        self.steps += 1;
+        if is_over || self.steps == LENGTHS {
+            *failed = root.t;
+            return Turn::End(None);
+        }
+        self.half = self.least.max(self.half * (1.0 / 64.0));
+        self.seek_before();
+        Turn::More
+    }
+}
+
 impl<const N: usize> Motion<N> {
     /// A certain contact between two times, if the volume has opposite signs at them and its root
     /// is one. `failed` is a root that is none, as far as doubles can say; it is not tried again.
@@ -40,11 +239,7 @@ impl<const N: usize> Motion<N> {
         self.contact_by(from, to, tolerance, failed, |moved| moved)
     }
 
-    /// The same, of control vectors that count as moved by `moved` of what they may have moved:
-    /// tests of the certificate make it less.
-    ///
-    /// The root is found by the rule of false position in its Illinois form. The longest time about
-    /// it is tried first: before a short one lie more slices.
+    /// The same, of control vectors that count as moved by `moved` of what they may have moved.
     #[inline(always)]
     pub fn contact_by(
         &self,
@@ -54,68 +249,17 @@ impl<const N: usize> Motion<N> {
         failed: &mut f64,
         moved: impl Fn(f64) -> f64,
     ) -> Option<Contact> {
-        if !(from.side() * to.side() < 0.0) || (from.t <= *failed && *failed <= to.t) {
+        let mut search = Search::NONE;
+        let speed = self.bounds(from, to).speed;
+        if !search.begin([from, to], (tolerance, speed), failed) {
             return None;
         }
-        let bounds = self.bounds(from, to);
-        let (mut low, mut high) = ((from.t, from.volume), (to.t, to.volume));
-        let (mut weight, mut last) = ((low.1, high.1), 0);
-        let mut root = *from;
-        for _ in 0..STEPS {
-            let t = low.0 + (high.0 - low.0) * (weight.0 / (weight.0 - weight.1));
-            let t = if t > low.0 && t < high.0 { t } else { 0.5 * (low.0 + high.0) };
-            if !(t > low.0 && t < high.0) {
-                break;
-            }
-            root = self.at(t);
-            if root.side() == 0.0 {
-                break;
-            }
-            if (root.volume < 0.0) == (low.1 < 0.0) {
-                low = (t, root.volume);
-                weight = (low.1, if last == 1 { 0.5 * weight.1 } else { weight.1 });
-                last = 1;
-            } else {
-                high = (t, root.volume);
-                weight = (if last == 2 { 0.5 * weight.0 } else { weight.0 }, high.1);
-                last = 2;
-            }
-            // The features are farther apart than they move until the root: it is one of their
-            // planes alone.
-            if root.distance > bounds.speed * (high.0 - low.0) + 4.0 * self.error {
-                return None;
+        loop {
+            let place = self.at(search.wanted);
+            if let Turn::End(found) = search.turn(self, &place, failed, &moved) {
+                return found;
             }
         }
-        let slope = ((high.1 - low.1) / (high.0 - low.0)).abs();
-        let slope = if slope > 0.0 { slope } else { ((to.volume - from.volume) / (to.t - from.t)).abs() };
-        let mut least = 1.5 * root.error / slope + 4.0 * U64;
-        let mut half = least.max(0.2 * tolerance / bounds.speed);
-        for k in 0..LENGTHS {
-            let a = self.at(from.t.max(root.t - half));
-            let z = self.at(to.t.min(root.t + half));
-            if !(a.t < z.t) {
-                return None;
-            }
-            let is_least = half <= least;
-            if a.side() * z.side() < 0.0 {
-                let far = (z.t - root.t).max(root.t - a.t) * TURN_UP;
-                let most = self.bounds(&a, &z).speed * far + TURNING_CURVE * self.error;
-                if root.holds(moved(most * TURN_UP)) {
-                    return Some(Contact { from: a.t, to: z.t });
-                }
-                if is_least {
-                    break;
-                }
-            } else if is_least {
-                if k > 4 {
-                    break;
-                }
-                least *= 4.0;
-            }
-            half = least.max(half * (1.0 / 64.0));
-        }
-        *failed = root.t;
-        None
     }
 }
 

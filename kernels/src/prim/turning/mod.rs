@@ -61,7 +61,7 @@ pub mod window;
 pub use certificate::Contact;
 pub use motion::Motion;
 pub use place::Place;
-pub use solve::length;
+pub use solve::{Walk, length};
 
 use super::inclusion::{Params, Verdict};
 use crate::math::Vec3;
@@ -88,8 +88,16 @@ pub fn vertex_face(v: &Side, f: &Side, p: &Params) -> Verdict {
 /// orders of the sides.
 #[inline]
 pub fn edge_edge(a: &Side, b: &Side, p: &Params) -> Verdict {
-    let (a, b) = if a.precedes(b) { (b, a) } else { (a, b) };
-    Motion::<4>::new(a, b).walk(p)
+    Motion::of_edges(a, b).walk(p)
+}
+
+impl Motion<4> {
+    /// The motion of two edges; the same for both orders.
+    #[inline(always)]
+    pub fn of_edges(a: &Side, b: &Side) -> Self {
+        let (a, b) = if a.precedes(b) { (b, a) } else { (a, b) };
+        Motion::new(a, b)
+    }
 }
 
 impl Side {

@@ -14,7 +14,7 @@ use crate::prim::isolate::nearest::nearest;
 /// pivot. There the points of the second side move linearly, or not at all. All lengths are
 /// multiplied by the power of two that brings the largest component to [1, 2). `N` is 3 for a vertex
 /// and a face, 4 for two edges.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Motion<const N: usize> {
     turns: [Turn; 2],
     /// The first side's pivot less the second's, at the start and at the end.

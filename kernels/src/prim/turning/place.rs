@@ -92,6 +92,17 @@ fn across_border<const N: usize>(w: &[Vec3<f64>; N], d: Vec3<f64>, rounding: f64
 }
 
 impl<const N: usize> Place<N> {
+    /// No place.
+    pub const NONE: Self = Place {
+        t: 0.0,
+        w: [Vec3([0.0; 3]); N],
+        reach: 0.0,
+        volume: 0.0,
+        error: 0.0,
+        distance: 0.0,
+        direction: Vec3([0.0; 3]),
+    };
+
     /// Betters the direction, and the distance of edges, of features that are very near.
     #[inline(never)]
     pub fn refine(&mut self, normal: Vec3<f64>, rounding: f64) {

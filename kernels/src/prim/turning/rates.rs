@@ -29,7 +29,7 @@ use crate::math::{Real, Vec3};
 
 /// A bound of a derivative: the lesser of a number, and of another with a part for the point's
 /// distance.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Rate {
     /// The bound by the difference of both turns.
     pub by_difference: f64,
@@ -48,7 +48,7 @@ impl Rate {
 }
 
 /// Bounds of the derivatives of all control vectors of a pair.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Rates {
     /// The first derivative of a point of the first side.
     pub first: Rate,

@@ -3,8 +3,11 @@
 //! All times before the slice are clear, so no answer is late. A slice that is not clear is cut to
 //! the part in which boxes meet, or halved; after two that are clear the next is twice as long.
 //! There is no stack.
+//!
+//! A walk takes turns, and each needs one place at most. So lanes that step together compute places
+//! together, whatever they need them for, and the code has one copy of each part.
 
-use super::certificate::Contact;
+use super::certificate::{Contact, Search, Turn};
 use super::motion::Motion;
 use super::place::Place;
 use super::slice::Bounds;
@@ -21,22 +24,63 @@ const SHORTEST: f64 = 0.01;
 /// Chords are used if they are left by at most this part of the distance.
 const FLAT: f64 = 0.1;
 
-/// The result of a slice.
-enum Look<const N: usize> {
-    /// No contact in it.
-    Clear,
-    /// No contact outside of a part of it, by its start and end.
-    Part(f64, f64),
-    /// Unknown; the place in the middle, if there is one.
-    Open(Option<Place<N>>),
+/// The place that a walk needs next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Need {
+    /// The start of the next slice.
+    Start,
+    /// Its end.
+    End,
+    /// None: it is known.
+    Nothing,
+    /// The middle of the slice.
+    Middle,
+    /// A place of the search for a certain contact.
+    Search,
 }
 
-/// The successor of a slice that is not clear.
-enum Next<const N: usize> {
-    /// Its part between two times.
-    Part(f64, f64),
-    /// Its first half, if it has one.
-    Middle(Option<Place<N>>),
+/// What is known of a slice.
+#[derive(Clone, Copy, PartialEq)]
+enum Look {
+    /// Nothing yet.
+    Unknown,
+    /// No contact in it.
+    Clear,
+    /// It is not clear.
+    Open,
+}
+
+/// The walk of a pair.
+#[derive(Clone, Copy, Debug)]
+pub struct Walk<const N: usize> {
+    need: Need,
+    /// The time of the place that it needs.
+    wanted: f64,
+    /// The end of the slice whose start is needed.
+    then: f64,
+    /// The slice; `to` is its middle while that is known and the slice is not clear.
+    from: Place<N>,
+    to: Place<N>,
+    bounds: Bounds,
+    /// The end of the slice.
+    end: f64,
+    /// The part in which boxes meet, if it is less than half of the slice; else the whole.
+    within: [f64; 2],
+    is_part: bool,
+    /// Nothing behind is wanted: the end of the step, or the start of a certain contact.
+    limit: f64,
+    certain: Contact,
+    is_certain: bool,
+    slices: u32,
+    near: u32,
+    was_clear: bool,
+    failed: f64,
+    /// From `part` to `beyond` boxes do not meet.
+    part: f64,
+    beyond: f64,
+    tolerance: f64,
+    separation: f64,
+    search: Search<N>,
 }
 
 impl<const N: usize> Motion<N> {
@@ -46,155 +90,321 @@ impl<const N: usize> Motion<N> {
         (place.distance + TURNING_CURVE * self.error) * TURN_UP <= separation
     }
 
-    /// Tests a slice.
+    /// Whether planes prove that a slice is clear, by its chords or by parabolas through its middle.
     #[inline(always)]
-    fn look(&self, from: &Place<N>, to: &Place<N>, b: &Bounds, separation: f64) -> Look<N> {
-        let window = self.window(from, to, b, separation);
-        if window.is_empty() {
-            return Look::Clear;
-        }
-        let h = to.t - from.t;
-        let (start, end) = (from.t + h * window.from, from.t + h * window.to);
-        if end - start < 0.5 * h && start < end {
-            return Look::Part(start, if end < to.t { end } else { to.t });
-        }
-        let t = from.t + 0.5 * h;
-        let between = t > from.t && t < to.t;
-        let is_flat = b.chord <= FLAT * from.distance.min(to.distance) || b.chord <= 2.0 * self.error;
-        let middle = (between && !is_flat).then(|| self.at(t));
-        let c = self.curves(from, middle.as_ref(), to, b);
-        let mut directions = [from.direction, to.direction, from.direction + to.direction];
-        if let Some(middle) = &middle {
-            directions[2] = middle.direction;
-        }
+    fn is_clear(
+        &self,
+        from: &Place<N>,
+        middle: Option<&Place<N>>,
+        to: &Place<N>,
+        (b, separation): (&Bounds, f64),
+    ) -> bool {
+        let c = self.curves(from, middle, to, b);
+        let between = middle.map_or(from.direction + to.direction, |middle| middle.direction);
         let side = if from.volume > 0.0 { 1.0 } else { -1.0 };
-        let apart = (side * to.volume > 0.0 && self.is_apart_by_plane(&c, side, separation))
-            || self.is_apart_along(&c, directions[1], separation)
-            || self.is_apart_along(&c, directions[0], separation)
-            || self.is_apart_along(&c, directions[2], separation)
-            || self.is_apart_between(&c, [directions[0], directions[1]], separation);
-        if apart {
-            return Look::Clear;
-        }
-        Look::Open(if between { Some(middle.unwrap_or_else(|| self.at(t))) } else { None })
+        (side * to.volume > 0.0 && self.is_apart_by_plane(&c, side, separation))
+            || self.is_apart_along(&c, to.direction, separation)
+            || self.is_apart_along(&c, from.direction, separation)
+            || self.is_apart_along(&c, between, separation)
+            || self.is_apart_between(&c, [from.direction, to.direction], separation)
     }
 
     /// Walks through the step.
     #[inline(always)]
     pub fn walk(&self, p: &Params) -> Verdict {
-        if !self.finite || !(p.end > 0.0) || p.min_separation.is_nan() {
-            return Verdict::undecided(0.0, p.end, 0, true);
-        }
-        if !(self.reach > 0.0) {
-            // All points are at the origin, throughout.
-            return Verdict::TOUCHING;
-        }
-        let finest = TURNING_FINEST * self.error;
-        let tolerance = Real::max(p.tolerance * self.scale, finest);
-        let separation = Real::max(p.min_separation, 0.0) * self.scale;
-        let mut from = self.at(0.0);
-        let mut to = self.at(p.end);
-        let mut limit = p.end;
-        let mut certain: Option<Contact> = None;
-        let (mut slices, mut near, mut clear, mut failed) = (0, 0, false, -1.0);
-        // From `part` to `beyond` boxes do not meet.
-        let (mut part, mut beyond) = (p.end, p.end);
+        let mut walk = Walk::NONE;
+        let mut verdict = walk.begin(self, p);
         loop {
-            let give_up = slices >= p.max_iterations;
-            slices += 1;
-            let verdict = |certain: Option<Contact>, t: f64| match certain {
-                Some(contact) => Verdict::contact(t, contact.to, slices, give_up),
-                None => Verdict::undecided(t, p.end, slices, give_up),
-            };
-            if separation > 0.0 {
-                if self.is_within(&from, separation) {
-                    return Verdict::contact(from.t, from.t, slices, false);
-                }
-                if self.is_within(&to, separation) {
-                    limit = to.t;
-                    certain = Some(Contact { from: to.t, to: to.t });
-                }
+            if let Some(verdict) = verdict {
+                return verdict;
             }
-            if give_up {
-                return verdict(certain, from.t);
+            verdict = walk.turn(self, p);
+        }
+    }
+}
+
+impl<const N: usize> Walk<N> {
+    /// A walk that has not begun.
+    pub const NONE: Self = Walk {
+        need: Need::Nothing,
+        wanted: 0.0,
+        then: 0.0,
+        from: Place::NONE,
+        to: Place::NONE,
+        bounds: Bounds { time: 0.0, chord: 0.0, parabola: 0.0, speed: 0.0 },
+        end: 0.0,
+        within: [0.0; 2],
+        is_part: false,
+        limit: 0.0,
+        certain: Contact { from: 0.0, to: 0.0 },
+        is_certain: false,
+        slices: 0,
+        near: 0,
+        was_clear: false,
+        failed: 0.0,
+        part: 0.0,
+        beyond: 0.0,
+        tolerance: 0.0,
+        separation: 0.0,
+        search: Search::NONE,
+    };
+
+    /// Begins. A verdict if no turn is needed.
+    #[inline(always)]
+    pub fn begin(&mut self, m: &Motion<N>, p: &Params) -> Option<Verdict> {
+        if !m.finite || !(p.end > 0.0) || p.min_separation.is_nan() {
+            return Some(Verdict::undecided(0.0, p.end, 0, true));
+        }
+        if !(m.reach > 0.0) {
+            // All points are at the origin, throughout.
+            return Some(Verdict::TOUCHING);
+        }
+        self.tolerance = Real::max(p.tolerance * m.scale, TURNING_FINEST * m.error);
+        self.separation = Real::max(p.min_separation, 0.0) * m.scale;
+        (self.limit, self.part, self.beyond) = (p.end, p.end, p.end);
+        (self.is_certain, self.was_clear, self.failed) = (false, false, -1.0);
+        (self.slices, self.near) = (0, 0);
+        self.from.t = 0.0;
+        self.from_and_to(0.0, p.end);
+        None
+    }
+
+    /// The time before which there is certainly no contact. No verdict begins before.
+    #[inline(always)]
+    pub fn clear_until(&self) -> f64 {
+        self.from.t
+    }
+
+    /// Wants the start of a slice, then its end.
+    #[inline(always)]
+    fn from_and_to(&mut self, from: f64, to: f64) {
+        (self.need, self.wanted, self.then) = (Need::Start, from, to);
+    }
+
+    /// Wants the end of the slice.
+    #[inline(always)]
+    fn to(&mut self, to: f64) {
+        (self.need, self.wanted) = (Need::End, to);
+    }
+
+    /// The verdict at a time: the certain contact, or undecided.
+    #[inline(always)]
+    fn verdict(&self, t: f64, p: &Params, gives_up: bool) -> Option<Verdict> {
+        Some(if self.is_certain {
+            Verdict::contact(t, self.certain.to, self.slices, gives_up)
+        } else {
+            Verdict::undecided(t, p.end, self.slices, gives_up)
+        })
+    }
+
+    /// Takes a turn: computes the place that it needs, and does what it is for. In line: out of line
+    /// a GPU's local memory moves 1.5 times as much (`benches/NOTES.md`).
+    #[inline(always)]
+    pub fn turn(&mut self, m: &Motion<N>, p: &Params) -> Option<Verdict> {
+        let place = if self.need == Need::Nothing { self.to } else { m.at(self.wanted) };
+        let mut look = Look::Unknown;
+        let mut has_middle = false;
+        // The search ended, with a contact or without one.
+        let mut ended = None;
+        match self.need {
+            Need::Start => {
+                self.from = place;
+                self.to(self.then);
+                return None;
             }
-            let b = self.bounds(&from, &to);
-            let h = to.t - from.t;
-            let next = match self.look(&from, &to, &b, separation) {
-                Look::Clear => {
-                    let mut step = if clear { 2.0 * h } else { h };
-                    from = to;
-                    if from.t >= part && beyond > from.t {
-                        // The part that was cut off was about as long as the slice then.
-                        step = step.max(beyond - from.t);
-                        from = self.at(beyond);
+            Need::Search => match self.search.turn(m, &place, &mut self.failed, |moved| moved) {
+                Turn::More => {
+                    self.wanted = self.search.wanted;
+                    return None;
+                }
+                Turn::End(found) => ended = Some(found),
+            },
+            Need::Middle => has_middle = true,
+            Need::End | Need::Nothing => {
+                self.to = place;
+                let gives_up = self.slices >= p.max_iterations;
+                self.slices += 1;
+                if self.separation > 0.0 {
+                    if m.is_within(&self.from, self.separation) {
+                        return Some(Verdict::contact(self.from.t, self.from.t, self.slices, false));
                     }
-                    if from.t >= limit {
-                        return match certain {
-                            Some(contact) => verdict(certain, contact.from),
-                            None => Verdict::separated(p.end, slices),
-                        };
-                    }
-                    if from.t >= part {
-                        (part, beyond) = (limit, limit);
-                    }
-                    clear = true;
-                    let (t, most) = (from.t + step, part.min(limit));
-                    to = self.at(if t + 0.25 * step < most { t } else { most });
-                    continue;
-                }
-                Look::Part(start, end) => Next::Part(start, end),
-                Look::Open(middle) => Next::Middle(middle),
-            };
-            clear = false;
-            let found =
-                if separation > 0.0 { None } else { self.contact(&from, &to, tolerance, &mut failed) };
-            if let Next::Part(start, _) = next
-                && start > from.t
-            {
-                from = self.at(start);
-            }
-            if let Some(contact) = found {
-                certain = found;
-                limit = contact.from;
-                if !(limit > from.t) {
-                    return verdict(certain, from.t);
-                }
-                to = self.at(limit);
-                continue;
-            }
-            let next = match next {
-                Next::Part(_, end) => {
-                    beyond = if to.t >= part { beyond } else { to.t };
-                    part = end;
-                    to = self.at(end);
-                    continue;
-                }
-                Next::Middle(middle) => middle,
-            };
-            let is_shortest = next.is_none() || h <= TURNING_SHORTEST;
-            let way = h * b.speed;
-            let is_near = way <= SHORT * tolerance && from.distance <= separation + 0.5 * tolerance;
-            if is_shortest || is_near {
-                // With a separation the slice ends in the contact.
-                if certain.is_some() && (is_shortest || separation > 0.0 || way <= SHORTEST * tolerance) {
-                    return verdict(certain, from.t);
-                }
-                if certain.is_none() {
-                    near += 1;
-                    if is_shortest || near > NEAR {
-                        let found = self.contact_ahead(&from, h, p.end, [tolerance, separation]);
-                        return match found {
-                            Some(_) => verdict(found, from.t),
-                            None => Verdict::undecided(from.t, p.end, slices, !is_near),
-                        };
+                    if m.is_within(&self.to, self.separation) {
+                        self.limit = self.to.t;
+                        (self.is_certain, self.certain) = (true, Contact { from: self.to.t, to: self.to.t });
                     }
                 }
-            }
-            if let Some(next) = next {
-                to = next;
+                if gives_up {
+                    return self.verdict(self.from.t, p, true);
+                }
+                look = self.window(m);
+                if look == Look::Unknown && self.wants_middle(m) {
+                    return None;
+                }
             }
         }
+        if ended.is_none() {
+            if look == Look::Unknown {
+                let given = (&self.bounds, self.separation);
+                let middle = has_middle.then_some(&place);
+                let is_clear = m.is_clear(&self.from, middle, &self.to, given);
+                look = if is_clear { Look::Clear } else { Look::Open };
+            }
+            if look == Look::Clear {
+                return self.clear(p);
+            }
+            self.was_clear = false;
+            let given = (self.tolerance, self.bounds.speed);
+            let places = [&self.from, &self.to];
+            let begins = !(self.separation > 0.0) && self.search.begin(places, given, &mut self.failed);
+            if has_middle {
+                self.to = place;
+            }
+            if begins {
+                (self.need, self.wanted) = (Need::Search, self.search.wanted);
+                return None;
+            }
+        }
+        self.open(m, p, ended.flatten())
+    }
+
+    /// Cuts the slice to the part in which boxes meet. Clear if there is none, and open if it is
+    /// less than half.
+    #[inline(always)]
+    fn window(&mut self, m: &Motion<N>) -> Look {
+        let (from, to) = (&self.from, &self.to);
+        self.bounds = m.bounds(from, to);
+        self.end = to.t;
+        let window = m.window(from, to, &self.bounds, self.separation);
+        if window.is_empty() {
+            return Look::Clear;
+        }
+        let h = to.t - from.t;
+        let (start, end) = (from.t + h * window.from, from.t + h * window.to);
+        self.within = [start, if end < to.t { end } else { to.t }];
+        self.is_part = end - start < 0.5 * h && start < end;
+        if self.is_part { Look::Open } else { Look::Unknown }
+    }
+
+    /// The time in the middle of the slice, and whether it is one.
+    #[inline(always)]
+    fn middle(&self) -> (f64, bool) {
+        let t = self.from.t + 0.5 * (self.end - self.from.t);
+        (t, t > self.from.t && t < self.end)
+    }
+
+    /// Wants the middle of the slice, unless chords are near enough.
+    #[inline(always)]
+    fn wants_middle(&mut self, m: &Motion<N>) -> bool {
+        let (t, is_between) = self.middle();
+        let distance = self.from.distance.min(self.to.distance);
+        let chord = self.bounds.chord;
+        let is_flat = chord <= FLAT * distance || chord <= 2.0 * m.error;
+        let wants = is_between && !is_flat;
+        if wants {
+            (self.need, self.wanted) = (Need::Middle, t);
+        }
+        wants
+    }
+
+    /// Goes on behind a slice that is clear.
+    #[inline(always)]
+    fn clear(&mut self, p: &Params) -> Option<Verdict> {
+        let h = self.end - self.from.t;
+        let mut step = if self.was_clear { 2.0 * h } else { h };
+        let mut from = self.end;
+        let skips = from >= self.part && self.beyond > from;
+        if skips {
+            // The part that was cut off was about as long as the slice then.
+            step = step.max(self.beyond - from);
+            from = self.beyond;
+        }
+        if from >= self.limit {
+            let slices = self.slices;
+            return if self.is_certain {
+                self.verdict(self.certain.from, p, false)
+            } else {
+                Some(Verdict::separated(p.end, slices))
+            };
+        }
+        if from >= self.part {
+            (self.part, self.beyond) = (self.limit, self.limit);
+        }
+        self.was_clear = true;
+        let (t, most) = (from + step, self.part.min(self.limit));
+        let to = if t + 0.25 * step < most { t } else { most };
+        if skips {
+            self.from_and_to(from, to);
+        } else {
+            self.from = self.to;
+            self.to(to);
+        }
+        None
+    }
+
+    /// Goes on in a slice that is not clear, behind the search for a contact in it.
+    #[inline(always)]
+    fn open(&mut self, m: &Motion<N>, p: &Params, found: Option<Contact>) -> Option<Verdict> {
+        let moves = self.is_part && self.within[0] > self.from.t;
+        let start = if moves { self.within[0] } else { self.from.t };
+        let to;
+        if let Some(contact) = found {
+            (self.is_certain, self.certain) = (true, contact);
+            self.limit = contact.from;
+            if !(self.limit > start) {
+                return self.verdict(start, p, false);
+            }
+            to = self.limit;
+        } else if self.is_part {
+            self.beyond = if self.end >= self.part { self.beyond } else { self.end };
+            self.part = self.within[1];
+            to = self.part;
+        } else {
+            return self.halve(m, p);
+        }
+        if moves {
+            self.from_and_to(start, to);
+        } else {
+            self.to(to);
+        }
+        None
+    }
+
+    /// Goes on in the first half of the slice, unless it is short.
+    #[inline(always)]
+    fn halve(&mut self, m: &Motion<N>, p: &Params) -> Option<Verdict> {
+        let h = self.end - self.from.t;
+        let (t, is_between) = self.middle();
+        let is_shortest = !is_between || h <= TURNING_SHORTEST;
+        let way = h * self.bounds.speed;
+        let is_near =
+            way <= SHORT * self.tolerance && self.from.distance <= self.separation + 0.5 * self.tolerance;
+        if is_shortest || is_near {
+            // With a separation the slice ends in the contact.
+            let is_end = is_shortest || self.separation > 0.0 || way <= SHORTEST * self.tolerance;
+            if self.is_certain {
+                if is_end {
+                    return self.verdict(self.from.t, p, false);
+                }
+            } else {
+                self.near += 1;
+                if is_shortest || self.near > NEAR {
+                    let limits = [self.tolerance, self.separation];
+                    let found = m.contact_ahead(&self.from, h, p.end, limits);
+                    let from = self.from.t;
+                    return Some(match found {
+                        Some(contact) => Verdict::contact(from, contact.to, self.slices, false),
+                        None => Verdict::undecided(from, p.end, self.slices, !is_near),
+                    });
+                }
+            }
+        }
+        // The middle is known if it was needed.
+        if self.to.t == t {
+            self.need = Need::Nothing;
+        } else {
+            self.to(t);
+        }
+        None
     }
 }
 

@@ -3,13 +3,16 @@
 //!          [`crate::prim::turning`].
 //! Launch   [`features()`] over the pairs, a warp a block, which leaves out features that planes
 //!          keep apart ([`crate::prim::turning::apart`]), and of bodies that turn far triangles in
-//!          balls that stay apart; then [`solve`] over its lists, both kinds in one launch. A lane
-//!          a pair; a grid of any size strides. Only in a step in which a body may turn.
+//!          balls that stay apart; then [`solve`] over its lists, both kinds in one launch: as many
+//!          blocks of one warp as run at once. A lane a pair, and the next one when its walk has
+//!          ended. Only in a step in which a body may turn.
 //! Reads    pairs, their features, bodies that turn, points at rest and vertices; tolerances of
 //!          bodies, if they differ.
 //! Writes   contacts and undecided pairs with bounds of toi; or the earliest.
 //! Before   pairs are complete: volumes hold the paths, and all within a tolerance of them.
 //! After    {pairs that meet on their true paths} ⊆ listed; no time is late.
+//!          earliest = min {(toi, undecided) of each pair of the continuous query}: a walk ends if
+//!          all before a known time is clear. So the result is the same in any order.
 //! Room     pairs, hits: counted past the end, grown, run again.
 //! Cost     8 B pair, 160 B each of two bodies and 24 B a vertex (gathered). A pair of triangles
 //!          takes some 1,500 operations, half of them in f32; those that one window does not decide
@@ -18,18 +21,24 @@
 
 use super::climb::emit;
 use super::features::{VERTICES, owned, two_edges, vertex_and_face};
-use super::{of_edge_edge, of_vertex_face, stride};
-use crate::abi::{Output, Pair, Point, Positions, Span, TurnRecord, TurningArgs, TurningFeaturesArgs};
+use super::{of_edge_edge, of_vertex_face};
+use crate::abi::{
+    Listed, Pair, Point, Positions, RungArgs, Span, TurnRecord, TurningArgs, TurningFeaturesArgs, earliest,
+};
 use crate::bvh::turns::body_of;
-use crate::exec::{Block, Lane, WARP};
+use crate::exec::{Block, Lane, Slot, WARP};
 use crate::math::{Vec3, rigid};
 use crate::prim::balls::stay_apart;
+use crate::prim::inclusion::{Params, Verdict};
 use crate::prim::turning::apart::Course;
-use crate::prim::turning::{Side, edge_edge, vertex_face};
+use crate::prim::turning::{Motion, Side, Walk};
 use crate::queue::waiting::{Waiting, waiting_bytes};
 
 /// Lanes of a block of [`features()`]: one warp.
 pub const LANES: u32 = WARP;
+/// Turns that lanes take before those whose walks have ended take new pairs, at least. A pair of
+/// features takes some 20.
+const TURNS: u32 = 4;
 /// Bytes of shared memory of a block of [`features()`]: pairs that wait.
 pub const SHARED: u32 = waiting_bytes(LANES);
 
@@ -115,37 +124,99 @@ fn in_order<L: Lane>(lane: &L, args: &TurningFeaturesArgs, pair: Pair) -> Pair {
     if is_first { pair } else { Pair { a: pair.b, b: pair.a } }
 }
 
-/// Runs `body` for each pair of a list, a lane each, in a grid of any size.
-#[inline(always)]
-fn each<B: Block>(block: &mut B, pairs: Output<Pair>, mut body: impl FnMut(&B::Lane, Pair)) {
-    let count = pairs.listed(block);
-    stride(block, count, |block, base| {
-        block.phase(|lane| {
-            let i = base + lane.lane();
-            if i < count {
-                body(lane, pairs.get(lane, i));
-            }
-            lane.meet();
-        });
-    });
-}
-
 /// The contacts of both kinds.
 pub fn solve<B: Block>(block: &mut B, args: &TurningArgs) {
     let rung = &args.rung;
     let places = (&rung.frames, args.rest);
-    each(block, rung.vf.pairs, |lane, pair| {
+    walk_all(block, rung, &rung.vf, |lane, pair| {
         let face = lane.read(rung.faces, pair.b);
         let [v, f] = sides(lane, places, &[pair.a], &face);
-        let verdict = vertex_face(&v, &f, &of_vertex_face(lane, rung, pair));
-        emit(lane, rung, &rung.vf, pair, verdict);
+        (Motion::<3>::new(&v, &f), of_vertex_face(lane, rung, pair))
     });
-    each(block, rung.ee.pairs, |lane, pair| {
+    walk_all(block, rung, &rung.ee, |lane, pair| {
         let ends = [pair.a, pair.b].map(|edge| lane.read(rung.edges, edge));
         let [a, b] = sides(lane, places, &ends[0], &ends[1]);
-        let verdict = edge_edge(&a, &b, &of_edge_edge(lane, rung, pair));
-        emit(lane, rung, &rung.ee, pair, verdict);
+        (Motion::of_edges(&a, &b), of_edge_edge(lane, rung, pair))
     });
+}
+
+/// Walks through the step with each pair of a kind. Lanes take turns together; those whose walks
+/// have ended take the block's next pairs together.
+#[inline(always)]
+fn walk_all<B: Block, const N: usize>(
+    block: &mut B,
+    args: &RungArgs<f64>,
+    of: &Listed,
+    begin: impl Fn(&B::Lane, Pair) -> (Motion<N>, Params),
+) {
+    let (count, lanes) = (of.pairs.listed(block), block.lanes());
+    let share = block.share(count, lanes);
+    // The first of as many pairs as there are lanes, of which one is number `k` of the block.
+    let first = |k: u64| share.first as u64 + k / lanes as u64 * share.step as u64;
+    let mut motions = block.slot(Motion::<N>::default());
+    let mut walks = block.slot(Walk::<N>::NONE);
+    let mut pairs = block.slot(None::<Pair>);
+    let mut places = block.slot(0);
+    let mut taken = 0;
+    let mut is_last = false;
+    while !is_last {
+        block.phase(|lane| {
+            *places.of(lane) = pairs.of(lane).is_none() as u32;
+            lane.meet();
+        });
+        let idle = block.number(&mut places);
+        block.phase(|lane| {
+            if pairs.of(lane).is_none() {
+                let k = taken + *places.of(lane) as u64;
+                let i = first(k) + k % lanes as u64;
+                if first(k) < share.end as u64 && i < count as u64 {
+                    let pair = of.pairs.get(lane, i as u32);
+                    let (motion, params) = begin(lane, pair);
+                    *motions.of(lane) = motion;
+                    match walks.of(lane).begin(motions.of(lane), &params) {
+                        Some(verdict) => emit(lane, args, of, pair, verdict),
+                        None => *pairs.of(lane) = Some(pair),
+                    }
+                }
+            }
+            lane.meet();
+        });
+        taken += idle as u64;
+        is_last = first(taken) >= share.end as u64;
+        block.phase(|lane| {
+            let (motion, walk, pair) = (motions.of(lane), walks.of(lane), pairs.of(lane));
+            let (mut turns, mut goes_on) = (0, true);
+            while goes_on {
+                if let Some(of_lane) = *pair
+                    && let Some(verdict) = turn(lane, args, motion, walk)
+                {
+                    emit(lane, args, of, of_lane, verdict);
+                    *pair = None;
+                }
+                turns += 1;
+                let is_idle = pair.is_none();
+                goes_on = if is_last { lane.any(!is_idle) } else { !lane.any(is_idle & (turns >= TURNS)) };
+            }
+            lane.meet();
+        });
+    }
+}
+
+/// A turn of a walk. It ends as separated if only the earliest time is wanted and no verdict of the
+/// walk begins before a known time.
+#[inline(always)]
+fn turn<L: Lane, const N: usize>(
+    lane: &L,
+    args: &RungArgs<f64>,
+    motion: &Motion<N>,
+    walk: &mut Walk<N>,
+) -> Option<Verdict> {
+    if !args.earliest.is_empty()
+        && earliest::key(walk.clear_until(), false) >= lane.fetch_load(args.earliest, earliest::KEY)
+    {
+        return Some(Verdict::separated(args.params.end, 0));
+    }
+    walk.turn(motion, &args.params)
 }
 
 /// The motions of two features, each of one body. Vertices that do not turn are seen from the
