@@ -14,7 +14,8 @@ use std::mem::{MaybeUninit, offset_of};
 /// Parts of answers that submissions also make on the device. Begin by `nearmiss_device_extras()`.
 ///
 /// Answers to continuous and near queries have all parts. Those of discrete queries have groups by
-/// face and by corner. Others have none.
+/// face and by corner. Those of earliest queries have the contacts at their time, and then all parts
+/// of these. Others have none.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct NearmissDeviceExtras {
@@ -27,6 +28,9 @@ pub struct NearmissDeviceExtras {
     pub grouped_by: *const u32,
     /// How many there are.
     pub group_count: usize,
+    /// 1: the contacts at the time of an earliest query, in the lists of its answer, in no order. The
+    /// status counts them, and other parts are of these rows too.
+    pub first_contacts: u32,
 }
 
 /// Geometry of a row, in memory of the device. Unused rows are zeros, so they weigh nothing.
@@ -73,15 +77,22 @@ const _: () = {
 /// No parts.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_device_extras() -> NearmissDeviceExtras {
-    NearmissDeviceExtras { geometry: 0, least_by_vertex: 0, grouped_by: std::ptr::null(), group_count: 0 }
+    NearmissDeviceExtras {
+        geometry: 0,
+        least_by_vertex: 0,
+        grouped_by: std::ptr::null(),
+        group_count: 0,
+        first_contacts: 0,
+    }
 }
 
 /// As `nearmiss_detector_prepare`, with parts of the answers that submissions also make on the
-/// device: geometry of rows, rows by feature, the least time or distance of each vertex.
-/// `nearmiss_detector_extras_on_device` returns their addresses.
+/// device: geometry of rows, rows by feature, the least time or distance of each vertex, the contacts
+/// at the earliest time. `nearmiss_detector_extras_on_device` returns their addresses; these contacts
+/// are in the lists of `nearmiss_detector_on_device`.
 ///
-/// Fails as there; with `NEARMISS_INVALID_ARGUMENT` if no query can have a part, and for geometry of
-/// a step in which a rigid body may turn.
+/// Fails as there; with `NEARMISS_INVALID_ARGUMENT` if no query can have a part, for geometry of a
+/// step in which a rigid body may turn, and for the contacts at the earliest time on several devices.
 ///
 /// # Safety
 /// As of `nearmiss_detector_prepare`. So many numbers are in `grouped_by`.
@@ -103,6 +114,9 @@ pub unsafe extern "C" fn nearmiss_detector_prepare_with(
         }
         if wanted.least_by_vertex != 0 {
             extras = extras.with_least_by_vertex();
+        }
+        if wanted.first_contacts != 0 {
+            extras = extras.with_first_contacts();
         }
         // SAFETY: the caller's promise.
         for by in unsafe { items(wanted.grouped_by, wanted.group_count, "grouped_by") }? {

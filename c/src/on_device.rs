@@ -16,7 +16,7 @@ pub enum NearmissEntries {
     /// `NearmissDevicePair`: two triangles.
     NEARMISS_TRIANGLE_PAIRS = 0,
     /// `NearmissDeviceHit`: a vertex and a triangle, or two edges, and their times of contact. An
-    /// earliest query has none.
+    /// earliest query has none, or on request those at its time: `NearmissDeviceExtras`.
     NEARMISS_CONTACTS = 1,
     /// `NearmissDeviceNearHit`: a vertex and a triangle, or two edges, and their nearest points.
     NEARMISS_NEAR_PAIRS = 2,
@@ -121,7 +121,7 @@ pub struct NearmissDeviceNearest {
 /// Counts of a submitted query, in memory of the device.
 #[repr(C)]
 pub struct NearmissFrameStatus {
-    /// Entries of the first list; of an earliest query 0.
+    /// Entries of the first list; of an earliest query 0, unless its contacts were prepared.
     pub first: u64,
     /// Entries of the second list. In one ordered list: the number of edge/edge rows.
     pub second: u64,

@@ -13,7 +13,8 @@ pub enum Entries {
     /// [`Pair`]: two triangles.
     TrianglePairs,
     /// [`Hit`]: a vertex and an [element](crate::Body::elements), or two edges, and their first time
-    /// of contact. An earliest query has none.
+    /// of contact. An earliest query has none, unless [`DeviceExtras::with_first_contacts`] wants
+    /// those at its time.
     Contacts,
     /// [`NearHit`]: a vertex and an [element](crate::Body::elements), or two edges, their squared
     /// distance and nearest points.
@@ -40,12 +41,14 @@ pub struct DeviceList {
 ///
 /// Rows are numbered through both [lists](DeviceAnswer::lists), features through all bodies. An
 /// answer has the parts that it can have. Continuous and near answers have all. Discrete answers are
-/// grouped by face and by corner. Others have none.
+/// grouped by face and by corner. Earliest answers have the contacts at their time, and then all
+/// parts of these. Others have none.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DeviceExtras {
     pub(crate) geometry: bool,
     pub(crate) least: bool,
     pub(crate) groups: Vec<GroupBy>,
+    pub(crate) first_contacts: bool,
 }
 
 impl DeviceExtras {
@@ -73,12 +76,22 @@ impl DeviceExtras {
         self
     }
 
+    /// Adds the contacts at the time of an earliest query, as of
+    /// [`Detector::first_contacts`](crate::Detector::first_contacts): `lists` of its answer have them,
+    /// in no order, and the status counts them. Other parts are then of these rows too. Cost: some
+    /// ten launches, which test the pairs that may begin at that time. With a minimum separation or a
+    /// cubic solver these are all pairs.
+    #[must_use]
+    pub fn with_first_contacts(self) -> DeviceExtras {
+        DeviceExtras { first_contacts: true, ..self }
+    }
+
     /// The parts that rows of features can have, or rows of triangles.
     pub(crate) fn of(&self, of_features: bool) -> DeviceExtras {
         let of_triangles = |by: &GroupBy| matches!(by, GroupBy::Face | GroupBy::Corner);
         let groups = self.groups.iter().copied().filter(|by| of_features || of_triangles(by));
         let (geometry, least) = (self.geometry && of_features, self.least && of_features);
-        DeviceExtras { geometry, least, groups: groups.collect() }
+        DeviceExtras { geometry, least, groups: groups.collect(), first_contacts: false }
     }
 
     /// Whether there are none.

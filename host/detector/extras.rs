@@ -3,12 +3,13 @@
 use super::Detector;
 use crate::contacts::DeviceExtras;
 use crate::error::Error;
-use crate::query::Query;
+use crate::query::{Query, QueryKind};
 use crate::scene::{BodyId, DeviceMotion};
 
 impl Detector {
     /// As [`Detector::prepare`], with parts of the answers that submissions also make on the device:
-    /// geometry of rows, rows by feature, the least time or distance of each vertex.
+    /// geometry of rows, rows by feature, the least time or distance of each vertex, the contacts at
+    /// the earliest time.
     /// [`Detector::on_device`] returns their addresses.
     ///
     /// ```
@@ -36,6 +37,22 @@ impl Detector {
     ) -> Result<(), Error> {
         let prepared = self.prepared(motions, queries, extras);
         self.ended(prepared)
+    }
+
+    /// Refuses the contacts at the earliest time of queries of which none has such a time.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`].
+    pub(super) fn has_first_contacts(queries: &[Query], extras: &DeviceExtras) -> Result<(), Error> {
+        let is_earliest = |query: &Query| query.kind() == QueryKind::Earliest;
+        if !extras.first_contacts || queries.iter().any(is_earliest) {
+            return Ok(());
+        }
+        let kinds: Vec<String> = queries.iter().map(|query| query.kind().to_string()).collect();
+        Err(Error::InvalidArgument {
+            what: format!("contacts at the earliest time need an earliest query, got {}", kinds.join(", ")),
+            advice: "prepare an earliest query too, or leave out the first contacts".into(),
+        })
     }
 
     /// Refuses geometry of a step in which a rigid body may turn: its points move on arcs.

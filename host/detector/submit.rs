@@ -97,6 +97,7 @@ impl Detector {
         extras: &DeviceExtras,
     ) -> Result<(), Error> {
         check_submission(queries)?;
+        Detector::has_first_contacts(queries, extras)?;
         let given = on_device(motions);
         let in_motion = queries.iter().find(|query| !query.kind().is_at_rest());
         // If any query will read the end of the step, positions have room for it from the first on.

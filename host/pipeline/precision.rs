@@ -2,8 +2,8 @@
 
 use crate::mesh::Positions;
 use nearmiss_kernels::abi::{
-    AnswerGeometryArgs, BelowPrecisionArgs, CullArgs, CutArgs, DiscreteArgs, FeaturesArgs, Hit, LeastArgs,
-    MeshVerticesArgs, MortonArgs, NearArgs, NearExcludingArgs, NearHit, PlaceArgs, Point,
+    AnswerGeometryArgs, BelowPrecisionArgs, CullArgs, CutArgs, DiscreteArgs, FeaturesArgs, FirstPairsArgs,
+    Hit, LeastArgs, MeshVerticesArgs, MortonArgs, NearArgs, NearExcludingArgs, NearHit, PlaceArgs, Point,
     Positions as Frames, RungArgs, SolveArgs, Span, StartsArgs, ThickNearArgs, ThickRungArgs,
 };
 use nearmiss_kernels::entry::{self, Entry};
@@ -65,6 +65,8 @@ pub trait Precision: Real + Send {
     type Nearest: Entry<Args = LeastArgs<Self>>;
     /// Keeps pairs that may meet.
     type Cull: Entry<Args = CullArgs<Self>>;
+    /// Keeps tested pairs that may begin at the earliest time.
+    type FirstPairs: Entry<Args = FirstPairsArgs<Self>>;
     /// Vertex/face by the cubic in f32.
     type Vf32: Entry<Args = SolveArgs<Self>>;
     /// Vertex/face by the cubic in f64.
@@ -146,6 +148,7 @@ impl Precision for f32 {
     type Witness = entry::narrow_witness_f32;
     type Nearest = entry::narrow_nearest_f32;
     type Cull = entry::narrow_cull_f32;
+    type FirstPairs = entry::narrow_first_pairs_f32;
     type Vf32 = entry::narrow_vf_f32_f32;
     type Vf64 = entry::narrow_vf_f32_f64;
     type Ee32 = entry::narrow_ee_f32_f32;
@@ -215,6 +218,7 @@ impl Precision for f64 {
     type Witness = entry::narrow_witness_f64;
     type Nearest = entry::narrow_nearest_f64;
     type Cull = entry::narrow_cull_f64;
+    type FirstPairs = entry::narrow_first_pairs_f64;
     type Vf32 = entry::narrow_vf_f64_f32;
     type Vf64 = entry::narrow_vf_f64_f64;
     type Ee32 = entry::narrow_ee_f64_f32;

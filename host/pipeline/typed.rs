@@ -12,6 +12,7 @@ mod repeat;
 #[cfg(test)]
 mod sampled;
 mod scene;
+mod second;
 mod submit;
 #[cfg(test)]
 mod submitted;

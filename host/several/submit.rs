@@ -23,7 +23,8 @@ impl MultiDetector {
     /// As [`Detector::prepare_with`]: each device makes the parts of its share.
     ///
     /// # Errors
-    /// As there, and as of [`MultiDetector::prepare`].
+    /// As there, and as of [`MultiDetector::prepare`]. [`Error::InvalidArgument`] for the contacts at the
+    /// earliest time: each share has a time of its own.
     pub fn prepare_with(
         &mut self,
         motions: &[(BodyId, DeviceMotion)],
@@ -41,6 +42,14 @@ impl MultiDetector {
         extras: &DeviceExtras,
     ) -> Result<(), Error> {
         check_submission(queries)?;
+        if extras.first_contacts {
+            return Err(Error::InvalidArgument {
+                what: "contacts at the earliest time in memory of several devices: the time of a share is \
+                       not the earliest of all"
+                    .into(),
+                advice: "use one device, or `first_contacts` of the collected answer".into(),
+            });
+        }
         let queries: Vec<Query> =
             queries.iter().map(|query| self.divisible(*query)).collect::<Result<_, _>>()?;
         // Arrays of an earlier preparation may be gone.

@@ -44,7 +44,7 @@ use crate::stage::narrow::discrete::{Start, Still};
 use crate::stage::narrow::placed::Placed;
 use crate::stage::narrow::{
     abreast, approach, below_precision, bodies as narrow_bodies, certain, climb, cull, discrete, divide,
-    exclude, features, near, nearest, separate, slice, solve, turning,
+    exclude, features, first, near, nearest, separate, slice, solve, turning,
 };
 use crate::stage::refit::{levels, meshes as refit_of_meshes, tiles as refit_of_tiles, treelets};
 use crate::stage::traverse::instances::{
@@ -215,6 +215,9 @@ kernels! {
     narrow_approach_exact_f64: approach::exact::<f64, B>, [ThickRungArgs<f64>], SPREAD, 0;
     narrow_approach_advance_f32: approach::advance::<f32, B>, [ThickRungArgs<f32>], SPREAD, 0;
     narrow_approach_advance_f64: approach::advance::<f64, B>, [ThickRungArgs<f64>], SPREAD, 0;
+    narrow_first_pairs_f32: first::pairs::<f32, B>, [FirstPairsArgs<f32>], RUNG, 0;
+    narrow_first_pairs_f64: first::pairs::<f64, B>, [FirstPairsArgs<f64>], RUNG, 0;
+    narrow_first_hits: first::hits, [FirstHitsArgs], NARROW, 0;
     narrow_divide: divide::divide, [DivideArgs], WIDE, 0;
     narrow_turning_features: turning::features, [TurningFeaturesArgs], turning::LANES, turning::SHARED;
     narrow_turning: turning::solve, [TurningArgs], SPREAD, 0;
@@ -266,6 +269,7 @@ kernels! {
     answer_groups: answer::groups::groups, [AnswerGroupsArgs], WIDE, 0;
     sort_pass: sort::pass, [SortArgs], WIDE, sort::shared_bytes(WIDE);
     status_frame: status::status, [StatusArgs], NARROW, 0;
+    status_again: status::again, [StatusAgainArgs], NARROW, 0;
 }
 
 kernels_of_volumes! {

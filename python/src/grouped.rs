@@ -17,6 +17,7 @@ pub fn extras_of(
     geometry: bool,
     least_by_vertex: bool,
     grouped: Option<Vec<String>>,
+    first_contacts: bool,
 ) -> PyResult<DeviceExtras> {
     let mut extras = DeviceExtras::default();
     if geometry {
@@ -24,6 +25,9 @@ pub fn extras_of(
     }
     if least_by_vertex {
         extras = extras.with_least_by_vertex();
+    }
+    if first_contacts {
+        extras = extras.with_first_contacts();
     }
     let grouped = grouped.unwrap_or_default();
     grouped.iter().try_fold(extras, |extras, name| Ok(extras.grouped_by(by_of(name)?)))

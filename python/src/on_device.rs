@@ -304,7 +304,8 @@ impl DeviceAnswer {
     ///
     /// - Triangle pairs: triangles (room, 2) int32.
     /// - Contacts: feature_a, feature_b (room,) int32, toi, toi_upper (room,) float64, state (room,)
-    ///   uint32: 1 contact, 2 undecided, 4 added if the iterations ended.
+    ///   uint32: 1 contact, 2 undecided, 4 added if the iterations ended. An Earliest query has those
+    ///   at its time, in no order, if `prepare` was called with `first_contacts=True`; else none.
     /// - Near pairs: feature_a, feature_b, squared_distances (room,) float64, at (room, 2) float64:
     ///   the weights of the face's corners 1 and 2, or the place on each edge.
     /// - Nearest triangles: triangles, distances, at (room, 2, 2), points (room, 2, 3). One row, or a

@@ -198,8 +198,13 @@ impl MultiDetector {
     /// Prepare submissions: see Detector.prepare.
     ///
     /// Arrays may be on any of the GPUs; every submission copies them to the others. The work is
-    /// divided by what it costs now, until the next preparation.
-    #[pyo3(signature = (inputs, queries, *, geometry = false, least_by_vertex = false, grouped = None))]
+    /// divided by what it costs now, until the next preparation. Raises InvalidArgumentError for
+    /// `first_contacts`: each GPU has the time of its share alone.
+    #[pyo3(signature = (
+        inputs, queries, *, geometry = false, least_by_vertex = false, grouped = None,
+        first_contacts = false
+    ))]
+    #[allow(clippy::too_many_arguments, reason = "keywords of Python")]
     fn prepare(
         &self,
         py: Python<'_>,
@@ -208,8 +213,9 @@ impl MultiDetector {
         geometry: bool,
         least_by_vertex: bool,
         grouped: Option<Vec<String>>,
+        first_contacts: bool,
     ) -> PyResult<()> {
-        let extras = extras_of(geometry, least_by_vertex, grouped)?;
+        let extras = extras_of(geometry, least_by_vertex, grouped, first_contacts)?;
         let (queries, frame) = (queries_of(queries)?, self.frame_of(py, inputs, true)?);
         let (given, held) = (frame.on_device()?, frame.held);
         let (done, unread) = self

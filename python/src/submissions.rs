@@ -21,7 +21,15 @@ impl Detector {
     ///   alone.
     /// - `geometry`, `least_by_vertex`, `grouped`: parts of the answers that submissions also make on
     ///   the device. `on_device` has them. `grouped` has "vertex", "edge", "face" or "corner".
-    #[pyo3(signature = (inputs, queries, *, geometry = false, least_by_vertex = false, grouped = None))]
+    /// - `first_contacts`: `lists` of an Earliest query have the contacts at its time, as of
+    ///   `Detector.first_contacts`, in no order. Other parts are of these rows too.
+    ///
+    /// Raises InvalidArgumentError for a part that no query has.
+    #[pyo3(signature = (
+        inputs, queries, *, geometry = false, least_by_vertex = false, grouped = None,
+        first_contacts = false
+    ))]
+    #[allow(clippy::too_many_arguments, reason = "keywords of Python")]
     fn prepare(
         &self,
         py: Python<'_>,
@@ -30,8 +38,9 @@ impl Detector {
         geometry: bool,
         least_by_vertex: bool,
         grouped: Option<Vec<String>>,
+        first_contacts: bool,
     ) -> PyResult<()> {
-        let extras = extras_of(geometry, least_by_vertex, grouped)?;
+        let extras = extras_of(geometry, least_by_vertex, grouped, first_contacts)?;
         self.prepared(py, inputs, &queries_of(queries)?, &extras)
     }
 
@@ -42,10 +51,10 @@ impl Detector {
     /// - `ids`, `positions`, `quaternions`, `end_positions`, `end_quaternions`: as of `update_poses`,
     ///   arrays that stay where they are: of the GPU, or packed numpy arrays on a CPU. Write new poses into
     ///   them. They are held while prepared.
-    /// - `queries`, `geometry`, `least_by_vertex`, `grouped`: as of `prepare`.
+    /// - `queries`, `geometry`, `least_by_vertex`, `grouped`, `first_contacts`: as of `prepare`.
     #[pyo3(signature = (
         ids, positions, quaternions, queries, *, end_positions = None, end_quaternions = None,
-        geometry = false, least_by_vertex = false, grouped = None
+        geometry = false, least_by_vertex = false, grouped = None, first_contacts = false
     ))]
     #[allow(clippy::too_many_arguments, reason = "keywords of Python")]
     fn prepare_poses(
@@ -59,8 +68,9 @@ impl Detector {
         geometry: bool,
         least_by_vertex: bool,
         grouped: Option<Vec<String>>,
+        first_contacts: bool,
     ) -> PyResult<()> {
-        let extras = extras_of(geometry, least_by_vertex, grouped)?;
+        let extras = extras_of(geometry, least_by_vertex, grouped, first_contacts)?;
         let ends = [[Some(positions), Some(quaternions)], [end_positions, end_quaternions]];
         self.prepared_by_arrays(ids.py(), (ids, ends), &queries_of(queries)?, &extras)
     }

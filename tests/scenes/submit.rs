@@ -3,6 +3,7 @@
 mod exclusions;
 mod extras;
 mod faults;
+mod first;
 mod inputs;
 mod left_out;
 mod refusals;

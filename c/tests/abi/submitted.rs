@@ -164,8 +164,13 @@ fn parts_of_an_answer_are_where_the_detector_says() {
     let (motion, query) = (shared.motion(), near(0.02));
     let mut own = detector(&[described(&of)]);
     let by = [NearmissGroupBy::NEARMISS_BY_CORNER as u32];
-    let extras =
-        NearmissDeviceExtras { geometry: 1, least_by_vertex: 1, grouped_by: by.as_ptr(), group_count: 1 };
+    let extras = NearmissDeviceExtras {
+        geometry: 1,
+        least_by_vertex: 1,
+        grouped_by: by.as_ptr(),
+        group_count: 1,
+        ..nearmiss_device_extras()
+    };
     let mut prepare_with = |queries: &[NearmissQuery], extras: &NearmissDeviceExtras| {
         let (detector, of) = (Some(&mut *own), queries.as_ptr());
         // SAFETY: the test keeps the memory; names are NULL.

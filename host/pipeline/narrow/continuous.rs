@@ -2,6 +2,7 @@
 //! of them.
 
 mod bound;
+mod first;
 mod made;
 mod steps;
 
@@ -16,7 +17,7 @@ use crate::contacts::Entries;
 use crate::device::{Ahead, Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::below_precision::{self, BelowPrecision};
-use crate::pipeline::counts::Counts;
+use crate::pipeline::counts::{Counts, FrameCounters};
 use crate::pipeline::launch;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{GrowableOutput, List, Named, named};
@@ -25,6 +26,7 @@ use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
 use crate::query::{self, Certified, ContinuousSolver, Query};
 use crate::scene::Body;
+use first::SecondPass;
 use nearmiss_kernels::abi::rows::code;
 use nearmiss_kernels::abi::{
     BodyTolerance, Counter, Counters, CullArgs, Hit, Pair, SolveArgs, Span, counter, earliest,
@@ -61,6 +63,9 @@ pub struct ContinuousNarrow {
     earliest: Option<Buffer<u64>>,
     /// The smallest toi of a sample, or a given time, if it bounds the query.
     bound: Option<Buffer<u64>>,
+    /// The pass for the contacts at that time, in a submission that wants them. They are in the lists
+    /// of contacts then.
+    second: Option<SecondPass>,
     /// All contacts in order, if the device orders them.
     ordered: Option<Order<Hit>>,
 }
@@ -133,16 +138,28 @@ impl ContinuousNarrow {
             // All bits set: the greatest word.
             earliest.fill(u8::MAX)?;
         }
-        let [vf, ee] = self.tested(given.features);
+        let (pairs, hits) = (self.tested(given.features), [&self.vf_hits, &self.ee_hits]);
+        self.launch_solver(given, [pairs, self.turning.tested()], (hits, earliest))?;
+        if !self.is_certified() {
+            return Ok(());
+        }
+        let listed = (given.features.edges.span(), &self.vf_hits, &self.ee_hits);
+        below_precision::count(self.below_precision, self.rungs.tolerances(), listed, given)
+    }
+
+    /// Launches the solver over pairs that go straight, and over those that turn.
+    fn launch_solver<R: Precision>(
+        &self,
+        given: &NarrowContext<R>,
+        [[vf, ee], turning]: [[&List<Pair>; 2]; 2],
+        (hits, earliest): ([&List<Hit>; 2], Span<u64>),
+    ) -> Result<(), Error> {
         let edges = given.features.edges.span();
         let precision = match self.solver {
             ContinuousSolver::Certified(certified) => {
-                let hits = [&self.vf_hits, &self.ee_hits];
                 self.rungs.climb(given, (edges, given.is_sample), ([vf, ee], hits, earliest))?;
-                let listed = (edges, &self.vf_hits, &self.ee_hits);
                 let tolerances = self.rungs.tolerances();
-                self.turning.solve(given, (&certified, tolerances), (hits, earliest))?;
-                return below_precision::count(self.below_precision, tolerances, listed, given);
+                return self.turning.solve(given, (&certified, tolerances), (turning, hits, earliest));
             }
             ContinuousSolver::Cubic(precision) => precision,
         };
@@ -155,7 +172,7 @@ impl ContinuousNarrow {
             earliest,
             counters: given.counters,
         };
-        let (of_vf, of_ee) = (args(vf, &self.vf_hits), args(ee, &self.ee_hits));
+        let (of_vf, of_ee) = (args(vf, hits[0]), args(ee, hits[1]));
         match precision {
             query::Precision::F32 => {
                 launch::striding::<R::Vf32>(given.device, vf.capacity(), &of_vf)?;
@@ -207,6 +224,22 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
 
     fn samples(&self) -> bool {
         self.earliest.is_some() && self.bound.is_some()
+    }
+
+    fn take_second(&mut self, device: &Device, wanted: bool) -> Result<bool, Error> {
+        self.keep_second(device, wanted)
+    }
+
+    fn second(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
+        self.run_second(given)
+    }
+
+    fn counters_of_second(&self) -> Option<&FrameCounters> {
+        self.second_counters()
+    }
+
+    fn lists_of_second(&mut self) -> Vec<&mut dyn GrowableOutput> {
+        self.lists_of_second()
     }
 
     fn checks_start(&self) -> bool {
@@ -279,9 +312,10 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
     }
 
     fn ahead(&self, last: &Counts) -> Vec<Ahead<'_>> {
-        let mut all = Hits::ahead(&[&self.vf_hits, &self.ee_hits], self.ordered.as_ref(), last);
-        all.extend(self.earliest.as_ref().map(|earliest| earliest.ahead(earliest.len())));
-        all
+        match &self.earliest {
+            Some(earliest) => vec![earliest.ahead(earliest.len())],
+            None => Hits::ahead(&[&self.vf_hits, &self.ee_hits], self.ordered.as_ref(), last),
+        }
     }
 
     fn gather(&self, counters: &Counts) -> Result<Listed<'_>, Error> {
@@ -300,7 +334,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
     fn rows(&self, counters: Counters) -> Option<RowSpans> {
         let lists = [&self.vf_hits, &self.ee_hits];
         let rows = || RowSpans::Contacts(rows_of(&lists, self.ordered.as_ref(), counters));
-        self.earliest.is_none().then(rows)
+        (self.earliest.is_none() || self.second.is_some()).then(rows)
     }
 
     fn answer(&self, features: &Features) -> AnswerLists {

@@ -24,7 +24,7 @@ pub use exclude::Exclusions;
 pub use features::Features;
 
 use super::broad::Placeable;
-use super::counts::Counts;
+use super::counts::{Counts, FrameCounters};
 use super::layout::Layout;
 use super::list::{GrowableOutput, Named};
 use super::order::Ordering;
@@ -97,6 +97,33 @@ pub trait Narrow<R: Precision>: Send {
     /// there is none.
     fn bound(&self) -> Option<Span<u64>> {
         None
+    }
+
+    /// Takes or releases the memory of a second pass of submissions, for the contacts at the earliest
+    /// time. Returns whether it has one. Then its rows are these contacts.
+    ///
+    /// # Errors
+    /// Device errors.
+    fn take_second(&mut self, _device: &Device, _wanted: bool) -> Result<bool, Error> {
+        Ok(false)
+    }
+
+    /// Launches the second pass, behind all steps.
+    ///
+    /// # Errors
+    /// Device errors.
+    fn second(&mut self, _given: &NarrowContext<R>) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// Returns the counters of the second pass, if there is one.
+    fn counters_of_second(&self) -> Option<&FrameCounters> {
+        None
+    }
+
+    /// Returns the lists that the second pass fills, by its own counters.
+    fn lists_of_second(&mut self) -> Vec<&mut dyn GrowableOutput> {
+        Vec::new()
     }
 
     /// Returns whether it counts the triangle pairs that share a point at the start of the step.

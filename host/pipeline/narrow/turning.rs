@@ -144,7 +144,12 @@ impl Turning {
         ]
     }
 
-    /// Launches the solver of the pairs that turn. Its hits follow those of the others.
+    /// Returns the pairs that the solver tests.
+    pub fn tested(&self) -> [&List<Pair>; 2] {
+        self.kept.as_ref().map_or(self.candidates.each_ref(), Kept::lists)
+    }
+
+    /// Launches the solver of the pairs that turn, in these lists. Its hits follow those of the others.
     ///
     /// # Errors
     /// Device errors.
@@ -152,12 +157,11 @@ impl Turning {
         &self,
         given: &NarrowContext<R>,
         (certified, tolerances): (&Certified, Span<BodyTolerance>),
-        (hits, earliest): ([&List<Hit>; 2], Span<u64>),
+        (tested, hits, earliest): ([&List<Pair>; 2], [&List<Hit>; 2], Span<u64>),
     ) -> Result<(), Error> {
         if given.frames.turns.is_empty() || given.is_sample {
             return Ok(());
         }
-        let tested = self.kept.as_ref().map_or(self.candidates.each_ref(), Kept::lists);
         let listed = |kind: usize| Listed {
             pairs: tested[kind].output(given.counters),
             begun: Output::EMPTY,

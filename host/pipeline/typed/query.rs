@@ -242,21 +242,7 @@ impl<R: Precision> QueryMemory<R> {
                     self.traverse(scene, self.narrow.bound().map_or(Which::All, Which::Before))?;
                 }
                 Step::Narrow(..) | Step::Order => {
-                    let (frames, rest, faces) = scene.positions_of(self);
-                    let given = NarrowContext {
-                        device: &scene.device,
-                        frames,
-                        rest,
-                        faces,
-                        pairs: scene.candidates(self.is_of_instances).output(self.counters.counters()),
-                        bodies: self.records.span(),
-                        counters: self.counters.counters(),
-                        features: &scene.features,
-                        excluded: scene.exclusions.tables(self.records.span()),
-                        placeable: scene.broads[self.broad].phase.placeable(),
-                        may_grow: !self.settled,
-                        is_sample: matches!(step, Step::Narrow(_, true)),
-                    };
+                    let given = self.given(scene, matches!(step, Step::Narrow(_, true)));
                     if let Step::Narrow(at, _) = step {
                         self.narrow.run(at, &given)
                     } else {
@@ -267,6 +253,26 @@ impl<R: Precision> QueryMemory<R> {
             if self.settled || !self.grow(scene, step)? {
                 return Ok(());
             }
+        }
+    }
+
+    /// Returns the inputs of the narrow phase.
+    pub(super) fn given<'a>(&self, scene: &'a SceneMemory<R>, is_sample: bool) -> NarrowContext<'a, R> {
+        let (frames, rest, faces) = scene.positions_of(self);
+        let counters = self.counters.counters();
+        NarrowContext {
+            device: &scene.device,
+            frames,
+            rest,
+            faces,
+            pairs: scene.candidates(self.is_of_instances).output(counters),
+            bodies: self.records.span(),
+            counters,
+            features: &scene.features,
+            excluded: scene.exclusions.tables(self.records.span()),
+            placeable: scene.broads[self.broad].phase.placeable(),
+            may_grow: !self.settled,
+            is_sample,
         }
     }
 

@@ -4,20 +4,20 @@
 use super::TypedPipeline;
 use super::query::QueryMemory;
 use super::scene::SceneMemory;
+use super::second::room;
 use crate::contacts::{DeviceAnswer, DeviceExtras, DeviceList};
 use crate::device::{Buffer, Replay};
 use crate::error::Error;
-use crate::pipeline::counts::Counts;
+use crate::pipeline::counts::{Counts, FrameCounters};
 use crate::pipeline::extras::{Extras, Inputs, missing};
 use crate::pipeline::layout::Offsets;
-use crate::pipeline::list::GrowableOutput;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::Found;
 use crate::pipeline::{launch, purpose};
 use crate::scene::Pose;
 use crate::stages::{Stage, Stages};
-use nearmiss_kernels::abi::{Counter, FrameStatus, Room, Span, StatusArgs, seen};
-use nearmiss_kernels::entry::status_frame;
+use nearmiss_kernels::abi::{Counter, FrameStatus, Room, Span, StatusAgainArgs, StatusArgs, seen};
+use nearmiss_kernels::entry::{status_again, status_frame};
 
 /// Memory of a submission, in addition to that of its queries.
 pub struct Submission {
@@ -34,6 +34,8 @@ pub struct Submitted {
     pub query: usize,
     /// The room of every list that it fills.
     pub rooms: Buffer<Room>,
+    /// The room of every list of its second pass, if it has one.
+    again: Option<Buffer<Room>>,
     /// Status of its answer: whether it is whole, and its length.
     pub status: Buffer<FrameStatus>,
     /// Parts that are made on request.
@@ -110,12 +112,15 @@ impl<R: Precision> Submits for TypedPipeline<R> {
             if let Some(ordering) = self.queries[query].narrow.ordering() {
                 ordering.prepare(&self.scene.device)?;
             }
-            let rooms = device.upload(&self.queries[query].rooms(&mut self.scene))?;
+            let own = &mut self.queries[query];
+            let has_second = own.narrow.take_second(&self.scene.device, wanted.first_contacts)?;
+            let rooms = device.upload(&own.rooms(&mut self.scene))?;
+            let again = has_second.then(|| device.upload(&own.rooms_of_second())).transpose()?;
             let own = &self.queries[query];
             let rows = own.narrow.rows(own.counters.counters());
             let extras = rows.map(|rows| Extras::new(&self.scene.device, wanted, &own.layout, &rows));
             let extras = extras.transpose()?.flatten();
-            submitted.push(Submitted { query, rooms, status: device.buffer(1)?, extras });
+            submitted.push(Submitted { query, rooms, again, status: device.buffer(1)?, extras });
         }
         let made = submitted.iter().filter_map(|own| own.extras.as_ref());
         if let Some(part) = missing(wanted, &made.collect::<Vec<_>>()) {
@@ -214,11 +219,13 @@ impl<R: Precision> TypedPipeline<R> {
     fn whole(&mut self, query: usize) -> Result<Option<Counts>, Error> {
         let (own, scene) = (&mut self.queries[query], &mut self.scene);
         let counters = own.counters.read()?;
-        if !own.has_overflowed(scene, &counters) {
+        let second = own.short_of_second()?;
+        if second.is_none() && !own.has_overflowed(scene, &counters) {
             return Ok(Some(counters));
         }
         own.settled = false;
         own.grow_all(scene, &counters)?;
+        second.map_or(Ok(()), |counts| own.grow_second(scene, &counts))?;
         Ok(None)
     }
 
@@ -246,8 +253,6 @@ impl<R: Precision> TypedPipeline<R> {
 impl<R: Precision> QueryMemory<R> {
     /// Returns the room of every list that a frame fills.
     pub(super) fn rooms(&mut self, scene: &mut SceneMemory<R>) -> Vec<Room> {
-        let room =
-            |list: &&mut dyn GrowableOutput| Room { entries: list.room(), counter: list.counter(), pad: 0 };
         let mut rooms: Vec<Room> = scene.lists_of_traversal(self.broad).iter().map(room).collect();
         for step in self.narrow_steps_at() {
             rooms.extend(self.narrow.lists(step, &mut scene.features).iter().map(room));
@@ -272,6 +277,7 @@ impl<R: Precision> QueryMemory<R> {
         [Stage::Traverse, Stage::Narrow].into_iter().try_for_each(|stage| self.run(scene, stage))?;
         scene.device.join();
         self.run(scene, Stage::Order)?;
+        self.second(scene)?;
         let (lists, all) = (self.narrow.answer(&scene.features), self.counters.counters());
         if let (Some(extras), Some(rows)) = (&mut submitted.extras, self.narrow.rows(all)) {
             let ((frames, _, faces), edges) = (scene.positions_of(self), lists.edges);
@@ -287,6 +293,13 @@ impl<R: Precision> QueryMemory<R> {
             second: count(lists.counters.get(1)),
             crossing: count(lists.crossing.as_ref()),
         };
-        launch::blocks::<status_frame>(&scene.device, 1, &args)
+        match &submitted.again {
+            Some(rooms) => {
+                let counters = self.narrow.counters_of_second().map_or(all, FrameCounters::counters);
+                let args = StatusAgainArgs { frame: args, counters, rooms: rooms.span() };
+                launch::blocks::<status_again>(&scene.device, 1, &args)
+            }
+            None => launch::blocks::<status_frame>(&scene.device, 1, &args),
+        }
     }
 }

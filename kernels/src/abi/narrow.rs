@@ -96,6 +96,29 @@ arguments! {
         /// wanted.
         known: Span<u64>,
     }
+    /// `narrow_first_pairs`: tested pairs that may begin at the earliest time.
+    FirstPairsArgs<R: Real> {
+        /// Tested pairs, lists of those that are kept, parameters. The known time is that of
+        /// [`super::earliest`].
+        tested: CullArgs<R>,
+        /// 1: keeps all pairs if there is a time, as for a solver without a horizon. Else 0.
+        all: u32,
+        /// Zero.
+        pad: u32,
+    }
+    /// `narrow_first_hits`: contacts at the earliest time.
+    FirstHitsArgs {
+        /// Vertex/face contacts.
+        vf: Output<Hit>,
+        /// Edge/edge contacts.
+        ee: Output<Hit>,
+        /// Out: those of vertices and faces at that time.
+        first_vf: Output<Hit>,
+        /// Out: those of edges.
+        first_ee: Output<Hit>,
+        /// The words of [`super::earliest`].
+        earliest: Span<u64>,
+    }
     /// `narrow_vf`, `narrow_ee`: the first time of contact of two primitives in motion.
     SolveArgs<R: Real> {
         /// Positions.

@@ -7,7 +7,7 @@ use bytemuck::{Pod, Zeroable};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C, align(8))]
 pub struct FrameStatus {
-    /// Entries of the answer's first list; of an earliest query 0.
+    /// Entries of the answer's first list; of an earliest query 0, unless its contacts are wanted.
     pub first: u64,
     /// Entries of its second list, if there is one. If one list has both kinds in order, the number
     /// of the second kind.
@@ -55,5 +55,14 @@ arguments! {
         /// Counts the triangle pairs that share a point at the start; empty if the start is not
         /// checked.
         crossing: Span<u64>,
+    }
+    /// `status_again`: the same of a frame with a second pass, whose lists have counters of their own.
+    StatusAgainArgs {
+        /// The frame.
+        frame: StatusArgs,
+        /// Counters of the second pass.
+        counters: Counters,
+        /// Every list that it fills.
+        rooms: Span<Room>,
     }
 }

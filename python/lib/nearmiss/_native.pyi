@@ -1239,6 +1239,7 @@ class Detector:
         geometry: bool = False,
         least_by_vertex: bool = False,
         grouped: Sequence[Literal["vertex", "edge", "face", "corner"]] | None = None,
+        first_contacts: bool = False,
     ) -> None:
         """Prepare submissions: run the queries, load every kernel and take all memory.
 
@@ -1265,6 +1266,7 @@ class Detector:
         geometry: bool = False,
         least_by_vertex: bool = False,
         grouped: Sequence[Literal["vertex", "edge", "face", "corner"]] | None = None,
+        first_contacts: bool = False,
     ) -> None:
         """Prepare submissions of many rigid bodies that move by arrays of poses, a row a body.
 
@@ -1465,6 +1467,7 @@ class MultiDetector:
         geometry: bool = False,
         least_by_vertex: bool = False,
         grouped: Sequence[Literal["vertex", "edge", "face", "corner"]] | None = None,
+        first_contacts: bool = False,
     ) -> None:
         """Prepare submissions: see Detector.prepare.
 

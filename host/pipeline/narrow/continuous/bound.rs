@@ -14,11 +14,15 @@ impl ContinuousNarrow {
     /// # Errors
     /// Device errors.
     pub fn take_bound(&mut self, device: &Device) -> Result<(), Error> {
-        let isolates = self.solver.certified().is_some_and(|certified| !certified.is_apart());
-        if isolates {
+        if self.isolates() {
             self.bound = Some(device.of(purpose::EARLIEST).buffer(earliest::WORDS as usize)?);
         }
         Ok(())
+    }
+
+    /// Returns whether the solver has a time before which a pair has no verdict.
+    pub(super) fn isolates(&self) -> bool {
+        self.solver.certified().is_some_and(|certified| !certified.is_apart())
     }
 
     /// Sets the time that a query gives.

@@ -12,7 +12,7 @@ use crate::pipeline::narrow::turning::Turning;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::purpose;
 use crate::query::{Certified, ContinuousSolver};
-use nearmiss_kernels::abi::{Counter, counter, earliest};
+use nearmiss_kernels::abi::{Counter, Hit, counter, earliest};
 
 impl ContinuousNarrow {
     /// Allocates the phase for all contacts.
@@ -51,13 +51,14 @@ impl ContinuousNarrow {
         let survivors =
             || lists(may_meet, [counter::VF_SURVIVORS, counter::EE_SURVIVORS], capacities.survivors);
         let is_apart = solver.certified().is_some_and(Certified::is_apart);
+        let [vf_hits, ee_hits] = ContinuousNarrow::hits(device, capacities.hits)?;
         Ok(ContinuousNarrow {
             solver,
             start: None,
             survivors: (!is_apart).then(survivors).transpose()?,
             kept: None,
-            vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, capacities.hits[0])?,
-            ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, capacities.hits[1])?,
+            vf_hits,
+            ee_hits,
             rungs: Rungs::new(device, solver.certified(), &capacities)?,
             turning: Turning::new(device)?,
             counters: [
@@ -73,8 +74,20 @@ impl ContinuousNarrow {
             is_thick: false,
             earliest: None,
             bound: None,
+            second: None,
             ordered: None,
         })
+    }
+
+    /// Returns the lists of contacts.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub(super) fn hits(device: &Device, room: [usize; 2]) -> Result<[List<Hit>; 2], Error> {
+        Ok([
+            List::new(device, "vertex/face contacts", counter::VF_HITS, room[0])?,
+            List::new(device, "edge/edge contacts", counter::EE_HITS, room[1])?,
+        ])
     }
 
     /// Makes it a phase of vertices with a thickness, if they have one.

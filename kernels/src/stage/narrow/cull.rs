@@ -30,6 +30,7 @@ use crate::prim::isolate::{Edges, Face};
 use core::marker::PhantomData;
 
 /// Both kinds.
+#[inline(always)]
 pub fn cull<R: Real, B: Block>(block: &mut B, args: &CullArgs<R>) {
     let later = block.blocks() * block.lanes();
     let count = args.vf.listed(block);

@@ -20,6 +20,7 @@
 //! [`turning`] tests them on their paths.
 //! A scene that excludes pairs has [`mod@exclude`] behind the signs of triangles, and before a solver.
 //! A query of what approaches has [`mod@approach`] before its solver.
+//! A submission of an earliest query has [`mod@first`] behind its solver, on request.
 //! [`below_precision`] counts contacts that are too large for the tolerance, if any can be.
 
 pub mod abreast;
@@ -33,6 +34,7 @@ pub mod discrete;
 pub mod divide;
 pub mod exclude;
 pub mod features;
+pub mod first;
 pub mod near;
 pub mod nearest;
 pub mod placed;
