@@ -193,7 +193,7 @@ enum NearmissEntries
     // `NearmissDevicePair`: two triangles.
     NEARMISS_TRIANGLE_PAIRS = 0,
     // `NearmissDeviceHit`: a vertex and a triangle, or two edges, and their times of contact. An
-    // earliest query has none.
+    // earliest query has none, or on request those at its time: `NearmissDeviceExtras`.
     NEARMISS_CONTACTS = 1,
     // `NearmissDeviceNearHit`: a vertex and a triangle, or two edges, and their nearest points.
     NEARMISS_NEAR_PAIRS = 2,
@@ -590,7 +590,8 @@ typedef struct {
 // Parts of answers that submissions also make on the device. Begin by `nearmiss_device_extras()`.
 //
 // Answers to continuous and near queries have all parts. Those of discrete queries have groups by
-// face and by corner. Others have none.
+// face and by corner. Those of earliest queries have the contacts at their time, and then all parts
+// of these. Others have none.
 typedef struct {
     // 1: a `NearmissDeviceRowGeometry` for each row. Cost: 128 bytes a row that there is room for.
     uint32_t geometry;
@@ -601,6 +602,9 @@ typedef struct {
     const uint32_t *grouped_by;
     // How many there are.
     size_t group_count;
+    // 1: the contacts at the time of an earliest query, in the lists of its answer, in no order.
+    // The status counts them, and other parts are of these rows too.
+    uint32_t first_contacts;
 } NearmissDeviceExtras;
 
 // The motion of a body in a step, or its place at rest. Make it by `nearmiss_motion_positions`,
@@ -943,7 +947,7 @@ typedef struct {
 
 // Counts of a submitted query, in memory of the device.
 typedef struct {
-    // Entries of the first list; of an earliest query 0.
+    // Entries of the first list; of an earliest query 0, unless its contacts were prepared.
     uint64_t first;
     // Entries of the second list. In one ordered list: the number of edge/edge rows.
     uint64_t second;
@@ -1213,11 +1217,12 @@ NearmissCode nearmiss_detector_exclude_pairs(NearmissDetector *detector,
 NearmissDeviceExtras nearmiss_device_extras(void);
 
 // As `nearmiss_detector_prepare`, with parts of the answers that submissions also make on the
-// device: geometry of rows, rows by feature, the least time or distance of each vertex.
-// `nearmiss_detector_extras_on_device` returns their addresses.
+// device: geometry of rows, rows by feature, the least time or distance of each vertex, the contacts
+// at the earliest time. `nearmiss_detector_extras_on_device` returns their addresses; these contacts
+// are in the lists of `nearmiss_detector_on_device`.
 //
-// Fails as there; with `NEARMISS_INVALID_ARGUMENT` if no query can have a part, and for geometry of
-// a step in which a rigid body may turn.
+// Fails as there; with `NEARMISS_INVALID_ARGUMENT` if no query can have a part, for geometry of a
+// step in which a rigid body may turn, and for the contacts at the earliest time on several devices.
 //
 // # Safety
 // As of `nearmiss_detector_prepare`. So many numbers are in `grouped_by`.

@@ -28,8 +28,8 @@ pub struct NearmissDeviceExtras {
     pub grouped_by: *const u32,
     /// How many there are.
     pub group_count: usize,
-    /// 1: the contacts at the time of an earliest query, in the lists of its answer, in no order. The
-    /// status counts them, and other parts are of these rows too.
+    /// 1: the contacts at the time of an earliest query, in the lists of its answer, in no order.
+    /// The status counts them, and other parts are of these rows too.
     pub first_contacts: u32,
 }
 

@@ -243,7 +243,7 @@ fn contacts_at_the_start_are_there() {
     for device in [engine(), sanitizer(ORDERS[0])] {
         for query in queries() {
             let seen = compared(&device, &case, query);
-            // Of what approaches each has a time of its own.
+            // Pairs that approach have times of their own.
             let most = if query.certified().is_some_and(|own| own.approaching) { 1 } else { 10 };
             assert!(seen.most >= most, "{query:?}: {seen:?}");
         }

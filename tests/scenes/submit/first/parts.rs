@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Other parts of the answer are of these rows, and another query beside it has its own.
+/// Other parts of the answer are of these rows, and another query has its own.
 #[test]
 fn other_parts_are_of_the_first_contacts() {
     let case = falling(&[&|i| if i % 2 == 0 { 0.5 } else { 1.0 }], 20);
