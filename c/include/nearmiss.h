@@ -1217,12 +1217,12 @@ NearmissCode nearmiss_detector_exclude_pairs(NearmissDetector *detector,
 NearmissDeviceExtras nearmiss_device_extras(void);
 
 // As `nearmiss_detector_prepare`, with parts of the answers that submissions also make on the
-// device: geometry of rows, rows by feature, the least time or distance of each vertex, the contacts
-// at the earliest time. `nearmiss_detector_extras_on_device` returns their addresses; these contacts
-// are in the lists of `nearmiss_detector_on_device`.
+// device: geometry of rows, rows by feature, the least time or distance of each vertex.
+// `nearmiss_detector_extras_on_device` returns their addresses. Contacts at the earliest time are
+// in the lists of `nearmiss_detector_on_device`.
 //
-// Fails as there; with `NEARMISS_INVALID_ARGUMENT` if no query can have a part, for geometry of a
-// step in which a rigid body may turn, and for the contacts at the earliest time on several devices.
+// Fails as there; with `NEARMISS_INVALID_ARGUMENT` if no query can have a part, and for geometry of
+// a step in which a rigid body may turn. Several devices have no contacts at the earliest time.
 //
 // # Safety
 // As of `nearmiss_detector_prepare`. So many numbers are in `grouped_by`.

@@ -959,7 +959,8 @@ class DeviceAnswer:
 
         - Triangle pairs: triangles (room, 2) int32.
         - Contacts: feature_a, feature_b (room,) int32, toi, toi_upper (room,) float64, state (room,)
-          uint32: 1 contact, 2 undecided, 4 added if the iterations ended.
+          uint32: 1 contact, 2 undecided, 4 added if the iterations ended. An Earliest query has those
+          at its time, in no order, if `prepare` was called with `first_contacts=True`; else none.
         - Near pairs: feature_a, feature_b, squared_distances (room,) float64, at (room, 2) float64:
           the weights of the face's corners 1 and 2, or the place on each edge.
         - Nearest triangles: triangles, distances, at (room, 2, 2), points (room, 2, 3). One row, or a
@@ -1252,6 +1253,10 @@ class Detector:
           alone.
         - `geometry`, `least_by_vertex`, `grouped`: parts of the answers that submissions also make on
           the device. `on_device` has them. `grouped` has "vertex", "edge", "face" or "corner".
+        - `first_contacts`: `lists` of an Earliest query have the contacts at its time, as of
+          `Detector.first_contacts`, in no order. Other parts are of these rows too.
+
+        Raises InvalidArgumentError for a part that no query has.
         """
 
     def prepare_poses(
@@ -1275,7 +1280,7 @@ class Detector:
         - `ids`, `positions`, `quaternions`, `end_positions`, `end_quaternions`: as of `update_poses`,
           arrays that stay where they are: of the GPU, or packed numpy arrays on a CPU. Write new poses into
           them. They are held while prepared.
-        - `queries`, `geometry`, `least_by_vertex`, `grouped`: as of `prepare`.
+        - `queries`, `geometry`, `least_by_vertex`, `grouped`, `first_contacts`: as of `prepare`.
         """
 
     @property
@@ -1472,7 +1477,8 @@ class MultiDetector:
         """Prepare submissions: see Detector.prepare.
 
         Arrays may be on any of the GPUs; every submission copies them to the others. The work is
-        divided by what it costs now, until the next preparation.
+        divided by what it costs now, until the next preparation. Raises InvalidArgumentError for
+        `first_contacts`: each GPU has the time of its share alone.
         """
 
     @property
