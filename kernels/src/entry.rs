@@ -179,8 +179,8 @@ kernels! {
     narrow_features_thick_f64: features::features::<f64, ThickMoves, false, B>, [FeaturesArgs<f64>], features::LANES, features::shared_bytes(features::LANES);
     narrow_features_thick_at_rest_f32: features::features::<f32, ThickRests, false, B>, [FeaturesArgs<f32>], features::LANES, features::shared_bytes(features::LANES), registers = 72;
     narrow_features_thick_at_rest_f64: features::features::<f64, ThickRests, false, B>, [FeaturesArgs<f64>], features::LANES, features::shared_bytes(features::LANES);
-    narrow_cull_f32: cull::cull::<f32, B>, [CullArgs<f32>], RUNG, 0;
-    narrow_cull_f64: cull::cull::<f64, B>, [CullArgs<f64>], RUNG, 0;
+    narrow_cull_f32: cull::cull::<false, f32, B>, [CullArgs<f32>], RUNG, 0;
+    narrow_cull_f64: cull::cull::<false, f64, B>, [CullArgs<f64>], RUNG, 0;
     narrow_vf_f32_f32: solve::vf::<f32, f32, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_vf_f32_f64: solve::vf::<f32, f64, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_vf_f64_f32: solve::vf::<f64, f32, B>, [SolveArgs<f64>], WIDE, 0;

@@ -19,7 +19,7 @@
 //!          A tenth survives.
 
 use super::{append_mapped, edge, expect, moving};
-use crate::abi::CullArgs;
+use crate::abi::{CullArgs, earliest};
 use crate::bvh::horizon::Horizon;
 use crate::exec::{Block, Lane, RowMap};
 use crate::math::Real;
@@ -29,9 +29,12 @@ use crate::prim::isolate::ladder::rejected_before;
 use crate::prim::isolate::{Edges, Face};
 use core::marker::PhantomData;
 
-/// Both kinds.
-#[inline(always)]
-pub fn cull<R: Real, B: Block>(block: &mut B, args: &CullArgs<R>) {
+/// Both kinds. If only the pairs at the earliest time are wanted (`FIRST`), none without a time. Each
+/// kernel has an instance of its own: one that both called would be out of line, and copy arguments.
+pub fn cull<const FIRST: bool, R: Real, B: Block>(block: &mut B, args: &CullArgs<R>) {
+    if FIRST && block.load(args.known, earliest::KEY) == u64::MAX {
+        return;
+    }
     let later = block.blocks() * block.lanes();
     let count = args.vf.listed(block);
     let horizon = Horizon::of(block, args.known).time();

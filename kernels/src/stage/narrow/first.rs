@@ -24,11 +24,11 @@ use crate::math::Real;
 /// Pairs of both kinds that may begin at the earliest time; none without one.
 pub fn pairs<R: Real, B: Block>(block: &mut B, args: &FirstPairsArgs<R>) {
     let tested = &args.tested;
-    if block.load(tested.known, earliest::KEY) == u64::MAX {
+    if args.all == 0 {
+        cull::cull::<true, R, B>(block, tested);
         return;
     }
-    if args.all == 0 {
-        cull::cull(block, tested);
+    if block.load(tested.known, earliest::KEY) == u64::MAX {
         return;
     }
     let count = tested.vf.listed(block);
