@@ -237,8 +237,8 @@ fn lists_of_many_contacts_at_once_grow() {
 /// Tips that touch the floor at the start have time 0, and so have all that cross it.
 #[test]
 fn contacts_at_the_start_are_there() {
-    let touching = |i: usize| if i % 3 == 0 { 0.0 } else { 0.5 };
-    let crossing = |i: usize| if i % 4 == 0 { -0.5 } else { 0.25 };
+    let touching = |i: usize| if i.is_multiple_of(3) { 0.0 } else { 0.5 };
+    let crossing = |i: usize| if i.is_multiple_of(4) { -0.5 } else { 0.25 };
     let case = falling(&[&touching, &crossing], 40);
     for device in [engine(), sanitizer(ORDERS[0])] {
         for query in queries() {
