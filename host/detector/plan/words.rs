@@ -18,7 +18,7 @@ pub const STAGES: [(&str, &str); 10] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 111] = [
+const KERNELS: [(&str, &str); 113] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
     ("place_turns", "rotation vectors and paths of bodies that turn"),
     ("place_poses", "poses of instances, from the caller's memory and the host"),
@@ -101,6 +101,8 @@ const KERNELS: [(&str, &str); 111] = [
     ("narrow_part", "supporting planes, by the largest radius of each pair"),
     ("narrow_separate_thick", "supporting planes, of radii that differ"),
     ("narrow_separate", "supporting planes"),
+    ("narrow_divide_thick", "candidates without a thickness, and those with one"),
+    ("narrow_sift_thick", "feature pairs without a thickness, and those with one"),
     ("narrow_divide", "candidates of bodies that turn, and the others"),
     ("narrow_turning_features", "features of those that no plane keeps apart"),
     ("narrow_turning", "contacts on arcs, slice by slice"),

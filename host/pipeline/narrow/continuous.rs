@@ -10,6 +10,7 @@ use super::exclude::Kept;
 use super::features::Features;
 use super::rungs::Rungs;
 use super::start::StartCheck;
+use super::thin::{Thin, solver_in};
 use super::turning::Turning;
 use super::{AnswerLists, Narrow, NarrowContext, RowSpans, growable};
 use crate::contacts::Entries;
@@ -33,6 +34,7 @@ use steps::Step;
 
 /// The lists of a continuous query, or of an earliest one.
 pub struct ContinuousNarrow {
+    /// The solver of all pairs, or of those with a thickness.
     solver: ContinuousSolver,
     /// The check of the start; none for a query that assumes a start without crossings.
     start: Option<StartCheck>,
@@ -57,6 +59,8 @@ pub struct ContinuousNarrow {
     below_precision: Option<BelowPrecision>,
     /// Whether vertices have a thickness: then there is a separation, and no sample.
     is_thick: bool,
+    /// The other pairs, if features without a thickness may meet and the query has no separation.
+    thin: Option<Thin>,
     /// The smallest toi, for an earliest query.
     earliest: Option<Buffer<u64>>,
     /// The smallest toi of a sample, or a given time, if it bounds the query.
@@ -78,7 +82,8 @@ impl ContinuousNarrow {
 
     /// Returns the pairs that may meet, with those that are excluded.
     fn may_meet<'a>(&'a self, features: &'a Features) -> [&'a List<Pair>; 2] {
-        self.survivors.as_ref().unwrap_or(&features.candidates).each_ref()
+        let sifted = self.thin.as_ref().and_then(Thin::thick);
+        sifted.unwrap_or_else(|| self.survivors.as_ref().unwrap_or(&features.candidates).each_ref())
     }
 
     /// Puts pairs, vertex/face and edge/edge, among those that [`ContinuousNarrow::solve`] tests,
@@ -100,11 +105,15 @@ impl ContinuousNarrow {
         ee_list.put(ee, counts)
     }
 
-    /// Launches the cull, which keeps pairs that may meet; with a separation it launches nothing.
+    /// Launches the cull, which keeps pairs that may meet; for pairs with a separation it launches
+    /// nothing.
     ///
     /// # Errors
     /// Device errors.
     pub fn cull<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
+        if let Some(thin) = &self.thin {
+            return thin.cull(given);
+        }
         let ([vf, ee], Some([may_vf, may_ee])) = (&given.features.candidates, &self.survivors) else {
             return Ok(());
         };
@@ -139,7 +148,11 @@ impl ContinuousNarrow {
             ContinuousSolver::Certified(certified) => {
                 let hits = [&self.vf_hits, &self.ee_hits];
                 self.rungs.climb(given, (edges, given.is_sample), ([vf, ee], hits, earliest))?;
-                let listed = (edges, &self.vf_hits, &self.ee_hits);
+                let (listed, mut certified) = ((edges, &self.vf_hits, &self.ee_hits), certified);
+                if let Some(thin) = &self.thin {
+                    thin.solve(given, (hits, earliest))?;
+                    certified = *thin.certified();
+                }
                 let tolerances = self.rungs.tolerances();
                 self.turning.solve(given, (&certified, tolerances), (hits, earliest))?;
                 return below_precision::count(self.below_precision, tolerances, listed, given);
@@ -187,7 +200,11 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
                 let numbers = (gap.map_or(0.0, Certified::listed_within), known);
                 let thick = (self.solver.certified(), 2.0 * self.rungs.largest_radius());
                 let pairs = self.turning.divide(given, thick)?;
-                if self.is_thick {
+                if let Some(thin) = &self.thin {
+                    let thick = thin.divide(given, pairs)?;
+                    given.features.run::<R, R::ThickFeatures>(given, thick, numbers)?;
+                    thin.features(given)
+                } else if self.is_thick {
                     given.features.run::<R, R::ThickFeatures>(given, pairs, numbers)
                 } else if known.is_empty() {
                     given.features.run::<R, R::Features>(given, pairs, numbers)
@@ -220,24 +237,36 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
     fn set(&mut self, device: &Device, query: &Query, tolerances: &[BodyTolerance]) -> Result<(), Error> {
         self.bind(query)?;
         let Some(certified) = query.certified() else { return Ok(()) };
-        self.solver = (*certified).into();
+        self.solver = solver_in((*certified).into(), self.is_thick);
         self.finest = tolerances.iter().map(|record| record.tolerance).reduce(f64::min);
-        self.rungs.set(device, certified, tolerances)
+        if let Some(thin) = &mut self.thin {
+            thin.set(device, certified, tolerances)?;
+        }
+        let own = self.solver.certified().unwrap_or(certified);
+        self.rungs.set(device, own, tolerances)
     }
 
     fn lists<'a>(&'a mut self, step: usize, features: &'a mut Features) -> Vec<&'a mut dyn GrowableOutput> {
         let Ok(step) = self.step_at(step) else { return Vec::new() };
         match step {
             Step::Start => self.start.as_mut().map_or(Vec::new(), StartCheck::lists),
-            Step::Features => growable(&mut features.candidates).chain(self.turning.lists()).collect(),
-            Step::Cull => growable(self.survivors.iter_mut().flatten()).collect(),
+            Step::Features => {
+                let all = growable(&mut features.candidates).chain(self.turning.lists());
+                all.chain(self.thin.iter_mut().flat_map(Thin::listed)).collect()
+            }
+            Step::Cull => {
+                let thin = self.thin.iter_mut().flat_map(Thin::culled);
+                growable(self.survivors.iter_mut().flatten()).chain(thin).collect()
+            }
             Step::Exclude => {
                 let kept = self.kept.iter_mut().flat_map(Kept::growable);
-                kept.chain(self.turning.kept_lists()).collect()
+                let thin = self.thin.iter_mut().flat_map(Thin::kept);
+                kept.chain(self.turning.kept_lists()).chain(thin).collect()
             }
             Step::Solve => growable([&mut self.vf_hits, &mut self.ee_hits])
                 .chain(growable(&mut self.counters))
                 .chain(self.rungs.lists())
+                .chain(self.thin.iter_mut().flat_map(Thin::left))
                 .collect(),
         }
     }
@@ -256,6 +285,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
         let names = ["narrow: vf that are not excluded", "narrow: ee that are not excluded"];
         lists.extend(self.kept.iter().flat_map(|kept| kept.between(names)));
         lists.extend(self.rungs.between());
+        lists.extend(self.thin.iter().flat_map(Thin::between));
         lists
     }
 
