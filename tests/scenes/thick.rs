@@ -44,9 +44,10 @@ fn turned(body: &Body) -> Body {
     moved.with_thickness(body.thickness().clone())
 }
 
-/// A thickness of some vertices alone.
+/// A thickness of some vertices alone, of every fourth triangle.
 fn partial(n: usize, radius: f64) -> Vec<f64> {
-    (0..3 * n).map(|v| if v % 7 < 4 { 0.0 } else { radius * (1 + v % 3) as f64 }).collect()
+    let is_thin = |v: usize| v / 3 % 4 != 0 || v % 7 < 3;
+    (0..3 * n).map(|v| if is_thin(v) { 0.0 } else { radius * (1 + v % 3) as f64 }).collect()
 }
 
 /// Scenes of which some bodies have a thickness, by name.
@@ -54,13 +55,13 @@ fn scenes() -> Vec<(&'static str, Vec<Body>)> {
     let alone = |body: Body| body.with_filter(CollisionFilter::without_self_collision());
     vec![
         ("one of each", vec![soup(40, 7, 0.0), soup(40, 8, 0.03)]),
-        ("in doubles", vec![turned(&soup(30, 3, 0.0)), turned(&soup(30, 4, 0.05))]),
+        ("in doubles", vec![turned(&soup(90, 3, 0.0)), turned(&soup(30, 4, 0.05))]),
         (
             "two without, each alone",
             vec![alone(soup(40, 1, 0.0)), soup(30, 2, 0.02), alone(soup(40, 3, 0.0))],
         ),
         ("some vertices", vec![soup(30, 5, partial(30, 0.02)), soup(30, 6, 0.0)]),
-        ("some vertices of one", vec![soup(50, 9, partial(50, 0.03))]),
+        ("some vertices of one", vec![soup(90, 9, partial(90, 0.03))]),
         (
             "radii that differ",
             vec![

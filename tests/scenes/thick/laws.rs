@@ -135,7 +135,7 @@ fn bodies_that_turn_have_both_sorts() {
         Body::fixed(cuboid([x - 0.1, 1.0, -1.0], [x + 0.1, 1.2, 1.0])).with_thickness(radius)
     };
     let straight = soup(40, 4, 0.0);
-    let bodies = vec![bar, peg(0.0, 0.0), peg(0.5, 0.0625), straight];
+    let bodies = vec![bar, peg(0.8, 0.0), peg(1.2, 0.0625), straight];
     for certified in solvers(false) {
         let rows = found(engine(), &bodies, Continuous::by(certified)).rows;
         assert_eq!(fault(&rows, &wanted(&bodies, certified)), None, "{certified:?}");

@@ -35,6 +35,10 @@ fn every_machine_and_every_way_has_the_same_rows() {
                     (&wanted.rows, wanted.caveats()),
                     "{name}, {machine}"
                 );
+                if query.kind() == QueryKind::Continuous {
+                    assert_eq!(found.stats.candidates_vf_ee, wanted.stats.candidates_vf_ee, "{machine}");
+                    assert_eq!(found.stats.escalated_vf_ee, wanted.stats.escalated_vf_ee, "{machine}");
+                }
                 let own = own.fingerprints().expect("hashes");
                 assert_eq!(prints.get_or_insert_with(|| own.clone()), &own, "{name}, {machine}");
             }
