@@ -123,10 +123,9 @@ impl Given {
     }
 }
 
-/// A body with edges and points, in a step, with this thickness; tested against itself.
+/// A body with edges and points, in a step, with this thickness.
 pub fn loose(seed: u64, thickness: f64) -> Body {
-    let filter = nearmiss::scene::CollisionFilter::with_self_collision();
-    Given::random(seed, 60, true).body(true).with_filter(filter).with_thickness(thickness)
+    Given::random(seed, 60, true).body(true).with_thickness(thickness)
 }
 
 /// A row's kind and features, and the bits of its numbers.

@@ -36,7 +36,7 @@ fn each_row_is_that_of_its_own_pair() {
     }
 }
 
-/// What must approach is decided in both sorts alike.
+/// Pairs that must approach are decided in both sorts alike.
 #[test]
 fn what_approaches_is_that_of_its_own_pair() {
     let mut fewer = 0;
