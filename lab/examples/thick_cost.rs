@@ -17,7 +17,7 @@ const FRAMES: usize = 9;
 
 fn ask(device: &Device, name: &str, bodies: &[&Body], certified: Certified) -> Result<(), Error> {
     let bodies: Vec<Body> = bodies.iter().map(|&body| body.clone()).collect();
-    let mut detector = OneQuery::new(device.clone(), bodies, Continuous::by(certified).into())?;
+    let mut detector = OneQuery::new(device.clone(), bodies, Continuous::by(certified))?;
     let mut contacts = detector.detect()?;
     let (mut frames, mut steps) = (Vec::new(), Vec::<Vec<(&str, f64)>>::new());
     for _ in 0..FRAMES {

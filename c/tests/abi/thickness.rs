@@ -74,7 +74,8 @@ fn bodies_with_one_and_without_are_in_one_step() {
         .enumerate()
         .map(|(at, [t0, t1])| nearmiss_motion_step(at as u32, rows(t0), rows(t1)))
         .collect();
-    let inputs: Vec<_> = ids.iter().zip(&ends).map(|(id, [t0, t1])| (*id, Motion::step(t0, t1))).collect();
+    let inputs: Vec<_> =
+        ids.iter().zip(&ends).map(|(id, ends)| (*id, Motion::step(ends[0], ends[1]))).collect();
     for (kind, query) in [
         (NearmissQueryKind::NEARMISS_CONTINUOUS, Query::continuous()),
         (NearmissQueryKind::NEARMISS_EARLIEST, Query::earliest()),

@@ -89,7 +89,7 @@ fn bodies(seed: u64) -> [Body; 2] {
         let moved = Body::moving(mesh(points()), mesh(points())).expect("a step");
         moved.with_filter(CollisionFilter::without_self_collision()).with_thickness(thickness)
     };
-    [body(0.0.into()), body(partial(SIZE, 0.05).into())]
+    [body(0.0.into()), body(partial(SIZE, 0.25).into())]
 }
 
 #[test]
