@@ -25,12 +25,9 @@ use nearmiss_kernels::entry::{narrow_divide_thick, narrow_sift_thick};
 /// Returns the solver of pairs with a thickness, or of all in a scene without. A thickness is a
 /// separation: a query without one gets the smallest, which no sum with a radius has.
 pub fn solver_in(solver: ContinuousSolver, is_thick: bool) -> ContinuousSolver {
-    match solver {
-        ContinuousSolver::Certified(certified) if is_thick && !certified.is_apart() => {
-            Certified { min_separation: f64::MIN_POSITIVE, ..certified }.into()
-        }
-        other => other,
-    }
+    let touching = solver.certified().filter(|certified| is_thick && !certified.is_apart());
+    let apart = |of: &Certified| Certified { min_separation: f64::MIN_POSITIVE, ..*of }.into();
+    touching.map_or(solver, apart)
 }
 
 /// Returns whether pairs of a scene take two solvers.
