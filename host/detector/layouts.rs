@@ -1,6 +1,7 @@
 //! Layouts: the place of every body in the shared memory, by query.
 
 use super::engine::fits;
+use super::thick::meets_thin;
 use crate::device::Device;
 use crate::error::Error;
 use crate::memory;
@@ -58,7 +59,10 @@ impl Layouts {
                 if is_done { Some(layout) } else { layout.with_features(bodies, &looks) }
             }
             None => match Layout::within(bodies, query.kind(), &looks) {
-                Some(layout) => Some(layout.without(scene.left_out()).excluding(scene, &looks)?),
+                Some(layout) => {
+                    let layout = layout.without(scene.left_out()).excluding(scene, &looks)?;
+                    Some(Layout { meets_thin: meets_thin(scene), ..layout })
+                }
                 None => None,
             },
         };

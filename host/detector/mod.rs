@@ -129,7 +129,7 @@ impl Detector {
         self.scene.may_exclude(query.kind())?;
         self.may_pair_bodies(&query)?;
         self.may_approach(&query)?;
-        let (query, radii) = self.thickened(query)?;
+        let radii = self.radii_for(&query)?;
         let tolerances = match query.certified().map(|certified| certified.tolerance) {
             Some(Some(tolerance)) => Some(Arc::new(Tolerances::named(tolerance))),
             Some(None) => Some(self.default_tolerances()),

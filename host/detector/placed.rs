@@ -18,9 +18,8 @@ pub struct Placed {
     lacks_ends: bool,
     /// Motions that a submission reads; up to date while one is prepared.
     pub submitted: Vec<(BodyId, DeviceMotion)>,
-    /// Queries of a submission, as they are given and as they are tested; up to date while one is
-    /// prepared.
-    queries: Vec<[Query; 2]>,
+    /// Queries of a submission; up to date while one is prepared.
+    queries: Vec<Query>,
 }
 
 impl Placed {
@@ -66,15 +65,14 @@ impl Placed {
         }
     }
 
-    /// Returns what a submission tests for a query with these numbers: the query, with what the
-    /// thickness of bodies needs. `None` if it answers no such query.
-    pub fn tested(&self, query: &Query) -> Option<&Query> {
-        self.queries.iter().find(|[given, _]| given == query).map(|[_, tested]| tested)
+    /// Whether a submission answers a query with these numbers.
+    pub fn answers(&self, query: &Query) -> bool {
+        self.queries.contains(query)
     }
 
     /// Records the bodies and the queries of submissions.
-    pub fn submit(&mut self, inputs: &[(BodyId, DeviceMotion)], queries: Vec<[Query; 2]>) {
-        (self.submitted, self.queries) = (inputs.to_vec(), queries);
+    pub fn submit(&mut self, inputs: &[(BodyId, DeviceMotion)], queries: &[Query]) {
+        (self.submitted, self.queries) = (inputs.to_vec(), queries.to_vec());
     }
 }
 

@@ -79,12 +79,8 @@ impl Detector {
         what: impl FnOnce(&mut dyn Pipeline, usize) -> Result<T, Error>,
     ) -> Result<T, Error> {
         start_threads()?;
-        if self.engine.pipeline.is_none() {
-            return Ok(none);
-        }
-        let (query, _) = self.thickened(*query)?;
         let Some(pipeline) = &mut self.engine.pipeline else { return Ok(none) };
-        match pipeline.place_of(&query) {
+        match pipeline.place_of(query) {
             Some(at) => what(&mut **pipeline, at),
             None => Ok(none),
         }

@@ -105,17 +105,14 @@ impl Detector {
         self.apply(&given, in_motion)?;
         self.has_geometry_on_device(in_motion, extras)?;
         let questions = queries.iter().map(|&query| self.question(query)).collect::<Result<Vec<_>, _>>()?;
-        let tested: Vec<Query> = questions.iter().map(|question| question.query).collect();
-        // With a thickness, a query with a separation and one without have one shape.
-        check_submission(&tested)?;
         // Once before the rounds. Then lists that queries share have the longest length, and there
         // is a front that a submission can continue from.
         self.answer_whole(&questions)?;
         until_whole(|| {
             self.answer_whole(&questions)?;
-            self.try_submission(&given, &tested, extras)
+            self.try_submission(&given, queries, extras)
         })?;
-        self.placed.submit(motions, queries.iter().copied().zip(tested).map(<[Query; 2]>::from).collect());
+        self.placed.submit(motions, queries);
         self.engine.submits_alone = self.engine.pipeline.is_none();
         Ok(())
     }
@@ -213,8 +210,8 @@ impl Detector {
     /// Returns the addresses of the answer to a submitted query, for the caller's kernels that
     /// follow on the stream. `None` if the query is not prepared, or if nothing can meet.
     pub fn on_device(&self, query: &Query) -> Option<DeviceAnswer> {
-        let (pipeline, tested) = (self.engine.pipeline.as_ref()?, self.placed.tested(query)?);
-        pipeline.place_of(tested).and_then(|at| pipeline.answer(at))
+        let pipeline = self.engine.pipeline.as_ref().filter(|_| self.placed.answers(query))?;
+        pipeline.place_of(query).and_then(|at| pipeline.answer(at))
     }
 
     /// Waits for the last submission, or for the last launch of its recording. Returns the answer to
@@ -237,10 +234,10 @@ impl Detector {
         let question = self.question(query)?;
         let layout = self.layout(&query)?;
         self.read_again(true);
-        let answers = self.placed.tested(&query) == Some(&question.query);
+        let answers = self.placed.answers(&query);
         let found = match &mut self.engine.pipeline {
             Some(pipeline) => {
-                let place = pipeline.place_of(&question.query).filter(|_| answers);
+                let place = pipeline.place_of(&query).filter(|_| answers);
                 place.map_or(Ok(None), |at| pipeline.collect(at))?
             }
             None => None,

@@ -34,7 +34,8 @@ pub fn collect(
     memory::require("the contacts", found.bytes())?;
     let count = |which| found.counters[which];
     let turning = [count(counter::VF_TURNING), count(counter::EE_TURNING)];
-    let vf_ee = [count(counter::VF) + turning[0], count(counter::EE) + turning[1]];
+    let all = of_features(&found.counters, layout);
+    let vf_ee = [all[0] + turning[0], all[1] + turning[1]];
     let of_triangles = !query.kind().is_of_features();
     let starts_crossing = found.is_start_checked.then(|| count(counter::STARTS_CROSSING));
     let undecided = if let Listed::Earliest { undecided, .. } = found.listed {
@@ -50,7 +51,10 @@ pub fn collect(
         candidates_vf_ee: vf_ee,
         turning_vf_ee: turning,
         survivors_vf_ee: [count(counter::VF_SURVIVORS), count(counter::EE_SURVIVORS)],
-        escalated_vf_ee: [count(counter::VF_ESCALATED), count(counter::EE_ESCALATED)],
+        escalated_vf_ee: [
+            count(counter::VF_ESCALATED) + count(counter::VF_THIN_ESCALATED),
+            count(counter::EE_ESCALATED) + count(counter::EE_THIN_ESCALATED),
+        ],
         open_vf_ee: [count(counter::VF_OPEN), count(counter::EE_OPEN)],
         sliced_vf_ee: [count(counter::VF_HARD), count(counter::EE_HARD)],
         uncertain: count(counter::UNCERTAIN),
@@ -65,6 +69,18 @@ pub fn collect(
     let mut contacts = Contacts::new(rows(found, layout, looks), *query, starts_crossing);
     (contacts.undecided, contacts.caveats, contacts.stats) = (undecided, caveats, stats);
     if looks.ended() { Err(Error::Interrupted) } else { Ok(contacts) }
+}
+
+/// Returns how many vertex/face and edge/edge candidates there were: in a step of features with a
+/// thickness and without, of both sorts, each once.
+fn of_features(counters: &Counts, layout: &Layout) -> [u64; 2] {
+    let is_divided = counters[counter::THIN_PAIRS] + counters[counter::THICK_PAIRS] > 0;
+    let sorts = if is_divided && layout.is_ragged {
+        [[counter::VF_SOME_THICK, counter::VF_ALL_THIN], [counter::EE_SOME_THICK, counter::EE_ALL_THIN]]
+    } else {
+        [[counter::VF, counter::VF_THIN], [counter::EE, counter::EE_THIN]]
+    };
+    sorts.map(|sorts| sorts.into_iter().map(|sort| counters[sort]).sum())
 }
 
 /// Returns the rows of the answer; a part of them if an interrupt ends it.

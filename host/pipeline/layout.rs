@@ -64,6 +64,10 @@ pub struct Layout {
     pub radii: Arc<Vec<f64>>,
     /// Whether it differs within a body.
     pub is_uneven: bool,
+    /// Whether a body has vertices with a thickness and vertices without.
+    pub is_ragged: bool,
+    /// Whether a query may test two features without a thickness, in a scene in which others have one.
+    pub meets_thin: bool,
     /// The pairs of features that are excluded, as kernels read them.
     pub excluded: Arc<Excluded>,
     /// The bodies with triangles that may move, and those that are fixed.
@@ -128,6 +132,8 @@ impl Layout {
             let radii = bodies.iter().flat_map(|body| body.thickness().of_vertices(body.vertex_count()));
             all.radii = Arc::new(radii.collect());
             all.is_uneven = bodies.iter().any(|body| body.thickness().same().is_none());
+            let is_ragged = |body: &Body| body.thickness().is_partial();
+            all.is_ragged = bodies.iter().any(is_ragged);
         }
         if kind.is_of_features() { all.with_features(bodies, looks) } else { Some(all) }
     }

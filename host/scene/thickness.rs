@@ -61,6 +61,16 @@ impl Thickness {
         }
     }
 
+    /// Returns whether a vertex has no radius.
+    pub(crate) fn is_thin(&self) -> bool {
+        self.radii().any(|&radius| radius == 0.0)
+    }
+
+    /// Returns whether some vertices have a radius, and others none.
+    pub(crate) fn is_partial(&self) -> bool {
+        self.is_thin() && self.largest() > 0.0
+    }
+
     fn radii(&self) -> impl Iterator<Item = &f64> {
         match self {
             Thickness::Same(radius) => std::slice::from_ref(radius),
@@ -133,5 +143,8 @@ mod tests {
         assert_eq!(of(Thickness::from(vec![0.0, 0.25, 1.0])), [0.0, 0.25, 1.0]);
         assert_eq!(Thickness::from(vec![0.25; 2]).same(), Some(0.25));
         assert_eq!(Thickness::from(vec![0.25, 0.0]).same(), None);
+        let thin = |thickness: Thickness| [thickness.is_thin(), thickness.is_partial()];
+        assert_eq!(thin(Thickness::from(vec![0.25, 0.0])), [true, true]);
+        assert_eq!([thin(0.0.into()), thin(0.5.into())], [[true, false], [false, false]]);
     }
 }

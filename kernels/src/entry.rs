@@ -44,7 +44,7 @@ use crate::stage::narrow::discrete::{Start, Still};
 use crate::stage::narrow::placed::Placed;
 use crate::stage::narrow::{
     abreast, approach, below_precision, bodies as narrow_bodies, certain, climb, cull, discrete, divide,
-    exclude, features, first, near, nearest, separate, slice, solve, turning,
+    divide_thick, exclude, features, first, near, nearest, separate, slice, solve, turning,
 };
 use crate::stage::refit::{levels, meshes as refit_of_meshes, tiles as refit_of_tiles, treelets};
 use crate::stage::traverse::instances::{
@@ -219,6 +219,8 @@ kernels! {
     narrow_first_pairs_f64: first::pairs::<f64, B>, [FirstPairsArgs<f64>], RUNG, 0;
     narrow_first_hits: first::hits, [FirstHitsArgs], NARROW, 0;
     narrow_divide: divide::divide, [DivideArgs], WIDE, 0;
+    narrow_divide_thick: divide_thick::divide, [DivideThickArgs], WIDE, 0;
+    narrow_sift_thick: divide_thick::sift, [SiftThickArgs], WIDE, 0;
     narrow_turning_features: turning::features, [TurningFeaturesArgs], turning::LANES, turning::SHARED;
     narrow_turning: turning::solve, [TurningArgs], SPREAD, 0;
     narrow_near_f32: near::near::<f32, B>, [NearArgs<f32>], RUNG, 0, registers = 64;

@@ -47,11 +47,30 @@ def test_a_step_ends_at_the_thickness():
     )
     own = nm.Detector(scene, device=CPU)
     own.update({"high": (LOW + [0, 0, 2.0], LOW + [0, 0, 0.25])})
-    with pytest.raises(nm.InvalidArgumentError, match="no thickness"):
-        nm.Detector(nm.Scene(nm.Body(LOW, FACES), nm.Body(LOW, FACES), nm.Body(LOW, FACES, thickness=1.0)), device=CPU).earliest()
     first = own.earliest()
     assert first.toi == pytest.approx(1.5 / 1.75, abs=1e-3) and first.toi <= 1.5 / 1.75
     assert own.earliest(min_separation=0.25).toi == pytest.approx(1.25 / 1.75, abs=1e-3)
+
+
+def test_bodies_with_one_and_without_are_in_one_step():
+    falling = {"a": (LOW + [0, 0, 4.0], LOW), "b": (LOW + [0, 0, 8.0], LOW + [0, 0, 2.25])}
+
+    def step(thickness, **how):
+        bodies = [nm.Body(end[0], FACES, name=name, thickness=thickness.get(name, 0)) for name, end in falling.items()]
+        own = nm.Detector(nm.Scene(nm.Body(LOW + [0, 0, 2.0], FACES, name="low", kind="fixed"), *bodies), device=CPU)
+        own.update(falling)
+        return own.continuous(**how), own.earliest(**how)
+
+    (mixed, first), (thin, _) = step({"b": 0.5}), step({})
+    (thick, _) = step({"b": 0.5}, min_separation=1e-300)
+
+    def timed(answer, of_b):
+        return [row for row in zip(rows(answer), answer.toi.tolist()) if (2 in row[0][1]) == of_b]
+
+    # Without a thickness pairs touch, with one they come within it.
+    assert timed(mixed, False) == timed(thin, False) and len(timed(thin, False)) > 0
+    assert timed(mixed, True) == timed(thick, True) and len(timed(mixed, True)) > len(timed(thin, True))
+    assert first.toi == min(mixed.toi)
 
 
 def test_it_can_change_and_is_kept_in_copies():

@@ -123,6 +123,11 @@ impl Given {
     }
 }
 
+/// A body with edges and points, in a step, with this thickness.
+pub fn loose(seed: u64, thickness: f64) -> Body {
+    Given::random(seed, 60, true).body(true).with_thickness(thickness)
+}
+
 /// A row's kind and features, and the bits of its numbers.
 type Row = ((Kind, [u32; 2]), Vec<u64>);
 type Rows = BTreeMap<(Kind, [u32; 2]), Vec<u64>>;

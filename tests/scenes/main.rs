@@ -15,4 +15,5 @@ mod several;
 mod slices;
 mod starts_crossing;
 mod submit;
+mod thick;
 mod turning;

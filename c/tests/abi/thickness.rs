@@ -2,8 +2,9 @@
 
 use super::refusals::refused;
 use super::*;
-use nearmiss::{Detector, Near};
-use nearmiss_lab::scene::draped;
+use nearmiss::scene::{CollisionFilter, Motion};
+use nearmiss::{Detector, Near, Query};
+use nearmiss_lab::scene::{draped, soup};
 
 #[test]
 fn radii_count_as_in_the_library() {
@@ -50,5 +51,37 @@ fn radii_count_as_in_the_library() {
         refused(set(&[0.1, 0.2]), refuse, "2 radii for");
         assert_eq!(set(&[]), Ok(()));
         assert_eq!(rows(&mut own, 0.1), thin);
+    }
+}
+
+/// A step of a body with a thickness and of one without.
+#[test]
+fn bodies_with_one_and_without_are_in_one_step() {
+    let body = |seed| {
+        let body: Body = soup(60, seed, true).expect("a soup");
+        body.with_filter(CollisionFilter::with_self_collision())
+    };
+    let (thin, thick, radius) = (body(1), body(2), 0.03);
+    let device = nearmiss::Device::open(nearmiss::device::Backend::Cpu, None).expect("a device");
+    let bodies = vec![thin.clone(), thick.clone().with_thickness(radius)];
+    let mut library = Detector::new(device, bodies).expect("a detector");
+    let ids: Vec<_> = library.scene().ids().collect();
+    let mut own =
+        detector(&[described(&thin), NearmissBody { radii: &radius, radius_count: 1, ..described(&thick) }]);
+    let ends = [&thin, &thick].map(Body::ends);
+    let motions: Vec<_> = ends
+        .iter()
+        .enumerate()
+        .map(|(at, [t0, t1])| nearmiss_motion_step(at as u32, rows(t0), rows(t1)))
+        .collect();
+    let inputs: Vec<_> =
+        ids.iter().zip(&ends).map(|(id, ends)| (*id, Motion::step(ends[0], ends[1]))).collect();
+    for (kind, query) in [
+        (NearmissQueryKind::NEARMISS_CONTINUOUS, Query::continuous()),
+        (NearmissQueryKind::NEARMISS_EARLIEST, Query::earliest()),
+    ] {
+        let found = step(&mut own, &motions, &nearmiss_query(kind as u32)).expect("an answer");
+        let wanted = library.step(&inputs, &query).expect("an answer");
+        assert!(summary(&found).hash == wanted.hash() && !wanted.is_empty(), "{query:?}");
     }
 }

@@ -18,7 +18,7 @@ pub const STAGES: [(&str, &str); 10] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 114] = [
+const KERNELS: [(&str, &str); 116] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
     ("place_turns", "rotation vectors and paths of bodies that turn"),
     ("place_poses", "poses of instances, from the caller's memory and the host"),
@@ -103,6 +103,8 @@ const KERNELS: [(&str, &str); 114] = [
     ("narrow_separate", "supporting planes"),
     ("narrow_first_pairs", "pairs that may begin at the earliest time"),
     ("narrow_first_hits", "contacts at the earliest time"),
+    ("narrow_divide_thick", "candidates without a thickness, and those with one"),
+    ("narrow_sift_thick", "feature pairs without a thickness, and those with one"),
     ("narrow_divide", "candidates of bodies that turn, and the others"),
     ("narrow_turning_features", "features of those that no plane keeps apart"),
     ("narrow_turning", "contacts on arcs, slice by slice"),

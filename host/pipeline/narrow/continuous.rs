@@ -11,6 +11,7 @@ use super::exclude::Kept;
 use super::features::Features;
 use super::rungs::Rungs;
 use super::start::StartCheck;
+use super::thin::{Thin, solver_in};
 use super::turning::Turning;
 use super::{AnswerLists, Narrow, NarrowContext, RowSpans, growable};
 use crate::contacts::Entries;
@@ -35,6 +36,7 @@ use steps::Step;
 
 /// The lists of a continuous query, or of an earliest one.
 pub struct ContinuousNarrow {
+    /// The solver of all pairs, or of those with a thickness.
     solver: ContinuousSolver,
     /// The check of the start; none for a query that assumes a start without crossings.
     start: Option<StartCheck>,
@@ -59,6 +61,8 @@ pub struct ContinuousNarrow {
     below_precision: Option<BelowPrecision>,
     /// Whether vertices have a thickness: then there is a separation, and no sample.
     is_thick: bool,
+    /// The other pairs, if features without a thickness may meet and the query has no separation.
+    thin: Option<Thin>,
     /// The smallest toi, for an earliest query.
     earliest: Option<Buffer<u64>>,
     /// The smallest toi of a sample, or a given time, if it bounds the query.
@@ -68,6 +72,16 @@ pub struct ContinuousNarrow {
     second: Option<SecondPass>,
     /// All contacts in order, if the device orders them.
     ordered: Option<Order<Hit>>,
+}
+
+/// The pairs that the solver tests: vertex/face and edge/edge.
+struct Tested<'a> {
+    /// Those that go straight.
+    pairs: [&'a List<Pair>; 2],
+    /// Those without a thickness, in a scene in which the others have one.
+    thin: Option<[&'a List<Pair>; 2]>,
+    /// Those of bodies that turn.
+    turning: [&'a List<Pair>; 2],
 }
 
 impl ContinuousNarrow {
@@ -83,7 +97,8 @@ impl ContinuousNarrow {
 
     /// Returns the pairs that may meet, with those that are excluded.
     fn may_meet<'a>(&'a self, features: &'a Features) -> [&'a List<Pair>; 2] {
-        self.survivors.as_ref().unwrap_or(&features.candidates).each_ref()
+        let sifted = self.thin.as_ref().and_then(Thin::thick);
+        sifted.unwrap_or_else(|| self.survivors.as_ref().unwrap_or(&features.candidates).each_ref())
     }
 
     /// Puts pairs, vertex/face and edge/edge, among those that [`ContinuousNarrow::solve`] tests,
@@ -105,11 +120,15 @@ impl ContinuousNarrow {
         ee_list.put(ee, counts)
     }
 
-    /// Launches the cull, which keeps pairs that may meet; with a separation it launches nothing.
+    /// Launches the cull, which keeps pairs that may meet; for pairs with a separation it launches
+    /// nothing.
     ///
     /// # Errors
     /// Device errors.
     pub fn cull<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
+        if let Some(thin) = &self.thin {
+            return thin.cull(given);
+        }
         let ([vf, ee], Some([may_vf, may_ee])) = (&given.features.candidates, &self.survivors) else {
             return Ok(());
         };
@@ -138,8 +157,13 @@ impl ContinuousNarrow {
             // All bits set: the greatest word.
             earliest.fill(u8::MAX)?;
         }
-        let (pairs, hits) = (self.tested(given.features), [&self.vf_hits, &self.ee_hits]);
-        self.launch_solver(given, [pairs, self.turning.tested()], (hits, earliest))?;
+        let hits = [&self.vf_hits, &self.ee_hits];
+        let tested = Tested {
+            pairs: self.tested(given.features),
+            thin: self.thin.as_ref().map(Thin::tested),
+            turning: self.turning.tested(),
+        };
+        self.launch_solver(given, &tested, (hits, earliest))?;
         if !self.is_certified() {
             return Ok(());
         }
@@ -151,13 +175,18 @@ impl ContinuousNarrow {
     fn launch_solver<R: Precision>(
         &self,
         given: &NarrowContext<R>,
-        [[vf, ee], turning]: [[&List<Pair>; 2]; 2],
+        &Tested { pairs: [vf, ee], thin, turning }: &Tested,
         (hits, earliest): ([&List<Hit>; 2], Span<u64>),
     ) -> Result<(), Error> {
         let edges = given.features.edges.span();
         let precision = match self.solver {
             ContinuousSolver::Certified(certified) => {
                 self.rungs.climb(given, (edges, given.is_sample), ([vf, ee], hits, earliest))?;
+                let mut certified = certified;
+                if let (Some(of_thin), Some(tested)) = (&self.thin, thin) {
+                    of_thin.solve(given, (tested, hits, earliest))?;
+                    certified = *of_thin.certified();
+                }
                 let tolerances = self.rungs.tolerances();
                 return self.turning.solve(given, (&certified, tolerances), (turning, hits, earliest));
             }
@@ -204,7 +233,11 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
                 let numbers = (gap.map_or(0.0, Certified::listed_within), known);
                 let thick = (self.solver.certified(), 2.0 * self.rungs.largest_radius());
                 let pairs = self.turning.divide(given, thick)?;
-                if self.is_thick {
+                if let Some(thin) = &self.thin {
+                    let thick = thin.divide(given, pairs)?;
+                    given.features.run::<R, R::ThickFeatures>(given, thick, numbers)?;
+                    thin.features(given)
+                } else if self.is_thick {
                     given.features.run::<R, R::ThickFeatures>(given, pairs, numbers)
                 } else if known.is_empty() {
                     given.features.run::<R, R::Features>(given, pairs, numbers)
@@ -253,24 +286,36 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
     fn set(&mut self, device: &Device, query: &Query, tolerances: &[BodyTolerance]) -> Result<(), Error> {
         self.bind(query)?;
         let Some(certified) = query.certified() else { return Ok(()) };
-        self.solver = (*certified).into();
+        self.solver = solver_in((*certified).into(), self.is_thick);
         self.finest = tolerances.iter().map(|record| record.tolerance).reduce(f64::min);
-        self.rungs.set(device, certified, tolerances)
+        if let Some(thin) = &mut self.thin {
+            thin.set(device, certified, tolerances)?;
+        }
+        let own = self.solver.certified().unwrap_or(certified);
+        self.rungs.set(device, own, tolerances)
     }
 
     fn lists<'a>(&'a mut self, step: usize, features: &'a mut Features) -> Vec<&'a mut dyn GrowableOutput> {
         let Ok(step) = self.step_at(step) else { return Vec::new() };
         match step {
             Step::Start => self.start.as_mut().map_or(Vec::new(), StartCheck::lists),
-            Step::Features => growable(&mut features.candidates).chain(self.turning.lists()).collect(),
-            Step::Cull => growable(self.survivors.iter_mut().flatten()).collect(),
+            Step::Features => {
+                let all = growable(&mut features.candidates).chain(self.turning.lists());
+                all.chain(self.thin.iter_mut().flat_map(Thin::listed)).collect()
+            }
+            Step::Cull => {
+                let thin = self.thin.iter_mut().flat_map(Thin::culled);
+                growable(self.survivors.iter_mut().flatten()).chain(thin).collect()
+            }
             Step::Exclude => {
                 let kept = self.kept.iter_mut().flat_map(Kept::growable);
-                kept.chain(self.turning.kept_lists()).collect()
+                let thin = self.thin.iter_mut().flat_map(Thin::kept);
+                kept.chain(self.turning.kept_lists()).chain(thin).collect()
             }
             Step::Solve => growable([&mut self.vf_hits, &mut self.ee_hits])
                 .chain(growable(&mut self.counters))
                 .chain(self.rungs.lists())
+                .chain(self.thin.iter_mut().flat_map(Thin::left))
                 .collect(),
         }
     }
@@ -289,6 +334,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
         let names = ["narrow: vf that are not excluded", "narrow: ee that are not excluded"];
         lists.extend(self.kept.iter().flat_map(|kept| kept.between(names)));
         lists.extend(self.rungs.between());
+        lists.extend(self.thin.iter().flat_map(Thin::between));
         lists
     }
 

@@ -98,9 +98,22 @@ impl Features {
         &self,
         given: &NarrowContext<R>,
         pairs: Output<Pair>,
-        (gap, known): (f64, Span<u64>),
+        numbers: (f64, Span<u64>),
     ) -> Result<(), Error> {
-        let [vf, ee] = &self.candidates;
+        self.run_into::<R, E>(given, pairs, numbers, self.candidates.each_ref())
+    }
+
+    /// As [`Features::run`], with other lists for the candidates.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn run_into<R: Precision, E: Entry<Args = FeaturesArgs<R>>>(
+        &self,
+        given: &NarrowContext<R>,
+        pairs: Output<Pair>,
+        (gap, known): (f64, Span<u64>),
+        [vf, ee]: [&List<Pair>; 2],
+    ) -> Result<(), Error> {
         let args = FeaturesArgs {
             frames: given.frames,
             facets: self.facets.span(),

@@ -10,40 +10,109 @@ use nearmiss_kernels::abi::{Begun, Counter, Pair, counter};
 /// Lists of both kinds: a name for comparisons of machines, a name for errors, and the counter.
 pub type OfKinds = [(&'static str, &'static str, Counter); 2];
 
-/// The lists that rungs leave.
-pub const LEFT: [OfKinds; 2] = [
-    [
-        ("narrow: vf for f64", "vertex/face pairs for f64", counter::VF_ESCALATED),
-        ("narrow: ee for f64", "edge/edge pairs for f64", counter::EE_ESCALATED),
-    ],
-    [
-        ("narrow: vf for slices", "vertex/face pairs for slices", counter::VF_HARD),
-        ("narrow: ee for slices", "edge/edge pairs for slices", counter::EE_HARD),
-    ],
-];
+/// The lists of a solver.
+pub struct Names {
+    /// Those that rungs leave.
+    pub left: [OfKinds; 2],
+    /// Those of a query of what approaches, in the order of [`Approaching`].
+    approaching: [OfKinds; 5],
+}
 
-/// The lists of a query of what approaches, in the order of [`Approaching`].
-const APPROACHING: [OfKinds; 5] = [
-    [
-        ("narrow: vf beyond at the start", "vertex/face pairs beyond at the start", counter::VF_BEGIN_BEYOND),
-        ("narrow: ee beyond at the start", "edge/edge pairs beyond at the start", counter::EE_BEGIN_BEYOND),
+/// The lists of a solver that is alone, or of pairs with a thickness.
+pub const USUAL: Names = Names {
+    left: [
+        [
+            ("narrow: vf for f64", "vertex/face pairs for f64", counter::VF_ESCALATED),
+            ("narrow: ee for f64", "edge/edge pairs for f64", counter::EE_ESCALATED),
+        ],
+        HARD,
     ],
-    [
-        ("narrow: vf near at the start", "vertex/face pairs near at the start", counter::VF_BEGIN_NEAR),
-        ("narrow: ee near at the start", "edge/edge pairs near at the start", counter::EE_BEGIN_NEAR),
+    approaching: [
+        [
+            (
+                "narrow: vf beyond at the start",
+                "vertex/face pairs beyond at the start",
+                counter::VF_BEGIN_BEYOND,
+            ),
+            (
+                "narrow: ee beyond at the start",
+                "edge/edge pairs beyond at the start",
+                counter::EE_BEGIN_BEYOND,
+            ),
+        ],
+        [
+            ("narrow: vf near at the start", "vertex/face pairs near at the start", counter::VF_BEGIN_NEAR),
+            ("narrow: ee near at the start", "edge/edge pairs near at the start", counter::EE_BEGIN_NEAR),
+        ],
+        [
+            ("narrow: vf for integers", "vertex/face pairs for integers", counter::VF_UNBOUNDED),
+            ("narrow: ee for integers", "edge/edge pairs for integers", counter::EE_UNBOUNDED),
+        ],
+        [
+            ("narrow: vf that may approach", "vertex/face pairs that may approach", counter::VF_APPROACHING),
+            ("narrow: ee that may approach", "edge/edge pairs that may approach", counter::EE_APPROACHING),
+        ],
+        [
+            ("narrow: vf that advance", "vertex/face pairs that advance", counter::VF_ADVANCING),
+            ("narrow: ee that advance", "edge/edge pairs that advance", counter::EE_ADVANCING),
+        ],
     ],
-    [
-        ("narrow: vf for integers", "vertex/face pairs for integers", counter::VF_UNBOUNDED),
-        ("narrow: ee for integers", "edge/edge pairs for integers", counter::EE_UNBOUNDED),
+};
+
+/// The lists of the solver of pairs without a thickness, next to that of pairs with one. A separation
+/// has no pairs for slices and none to settle: these lists are the same.
+pub const THIN: Names = Names {
+    left: [
+        [
+            ("narrow: thin vf for f64", "thin vertex/face pairs for f64", counter::VF_THIN_ESCALATED),
+            ("narrow: thin ee for f64", "thin edge/edge pairs for f64", counter::EE_THIN_ESCALATED),
+        ],
+        HARD,
     ],
-    [
-        ("narrow: vf that may approach", "vertex/face pairs that may approach", counter::VF_APPROACHING),
-        ("narrow: ee that may approach", "edge/edge pairs that may approach", counter::EE_APPROACHING),
+    approaching: [
+        [
+            ("narrow: thin vf beyond", "thin vertex/face pairs beyond at the start", counter::VF_THIN_BEYOND),
+            ("narrow: thin ee beyond", "thin edge/edge pairs beyond at the start", counter::EE_THIN_BEYOND),
+        ],
+        [
+            ("narrow: thin vf near", "thin vertex/face pairs near at the start", counter::VF_THIN_NEAR),
+            ("narrow: thin ee near", "thin edge/edge pairs near at the start", counter::EE_THIN_NEAR),
+        ],
+        [
+            (
+                "narrow: thin vf for integers",
+                "thin vertex/face pairs for integers",
+                counter::VF_THIN_UNBOUNDED,
+            ),
+            ("narrow: thin ee for integers", "thin edge/edge pairs for integers", counter::EE_THIN_UNBOUNDED),
+        ],
+        [
+            (
+                "narrow: thin vf that may approach",
+                "thin vertex/face pairs that may approach",
+                counter::VF_THIN_APPROACHING,
+            ),
+            (
+                "narrow: thin ee that may approach",
+                "thin edge/edge pairs that may approach",
+                counter::EE_THIN_APPROACHING,
+            ),
+        ],
+        [
+            (
+                "narrow: thin vf that advance",
+                "thin vertex/face pairs that advance",
+                counter::VF_THIN_ADVANCING,
+            ),
+            ("narrow: thin ee that advance", "thin edge/edge pairs that advance", counter::EE_THIN_ADVANCING),
+        ],
     ],
-    [
-        ("narrow: vf that advance", "vertex/face pairs that advance", counter::VF_ADVANCING),
-        ("narrow: ee that advance", "edge/edge pairs that advance", counter::EE_ADVANCING),
-    ],
+};
+
+/// Pairs for slices.
+const HARD: OfKinds = [
+    ("narrow: vf for slices", "vertex/face pairs for slices", counter::VF_HARD),
+    ("narrow: ee for slices", "edge/edge pairs for slices", counter::EE_HARD),
 ];
 
 /// The lists of pairs to settle. How many there are depends on the machine, so none is compared.
@@ -105,8 +174,8 @@ impl Approaching {
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(device: &Device, capacities: &Capacities) -> Result<Self, Error> {
-        let [beyond, near, unbounded, approaching, advancing] = APPROACHING;
+    pub fn new(device: &Device, names: &Names, capacities: &Capacities) -> Result<Self, Error> {
+        let [beyond, near, unbounded, approaching, advancing] = names.approaching;
         let pairs = |names, capacity| lists(device, names, capacity).map(Left::Pairs);
         Ok(Approaching {
             beyond: pairs(beyond, capacities.survivors)?,
@@ -124,9 +193,9 @@ impl Approaching {
     }
 
     /// Returns the lists, with names.
-    pub fn named(&self) -> impl Iterator<Item = Named<'_>> {
+    pub fn named(&self, names: &Names) -> impl Iterator<Item = Named<'_>> {
         let Approaching { beyond, near, unbounded, approaching, advancing } = self;
-        let all = [beyond, near, unbounded, approaching, advancing].into_iter().zip(APPROACHING);
+        let all = [beyond, near, unbounded, approaching, advancing].into_iter().zip(names.approaching);
         all.flat_map(|(left, names)| left.named(names.map(|(name, ..)| name)))
     }
 }

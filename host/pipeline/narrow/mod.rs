@@ -14,6 +14,7 @@ mod near;
 mod rung;
 mod rungs;
 mod start;
+mod thin;
 mod turning;
 
 pub use answer::{AnswerLists, RowSpans};
@@ -211,15 +212,14 @@ pub fn narrow<R: Precision>(
             Box::new(narrow)
         }
         Query::Continuous(continuous) => {
-            let mut narrow =
-                ContinuousNarrow::all(device, continuous.solver, few)?.of_thick(device, layout)?;
+            let mut narrow = ContinuousNarrow::all(device, continuous.solver, layout, few)?;
             if continuous.until.is_some() {
                 narrow.take_bound(device)?;
             }
             Box::new(in_motion::<R>(narrow, device, (query.checks_start(), excludes), few)?)
         }
         Query::Earliest(earliest) => {
-            let narrow = ContinuousNarrow::first(device, earliest.solver, few)?.of_thick(device, layout)?;
+            let narrow = ContinuousNarrow::first(device, earliest.solver, layout, few)?;
             Box::new(in_motion::<R>(narrow, device, (query.checks_start(), excludes), few)?)
         }
         Query::Near(query) => Box::new(NearNarrow::new(device, query.distance, layout, few)?),

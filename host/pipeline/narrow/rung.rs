@@ -50,7 +50,7 @@ pub fn rungs(certified: &Certified) -> &'static [Rung] {
 }
 
 impl Rung {
-    /// Returns which of the lists of [`LEFT`](super::left::LEFT) the undecided pairs of a rung of the
+    /// Returns which of the lists of [`Names::left`](super::left::Names::left) the undecided pairs of a rung of the
     /// solver go to.
     pub fn left(self) -> usize {
         matches!(self, Rung::Isolate64 | Rung::Settle | Rung::Slice | Rung::Separate64 | Rung::SeparateThick)

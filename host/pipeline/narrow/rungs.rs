@@ -14,7 +14,7 @@
 //!   skipped pair could lower the least one, whichever branch found the time.
 //! - The next rung comes after the first one of both branches. All come before what follows.
 
-use super::left::{ASKED, Approaching, LEFT, Left, lists};
+use super::left::{ASKED, Approaching, Left, Names, lists};
 use super::rung::{Rung, rungs};
 use super::{Capacities, NarrowContext};
 use crate::device::{Buffer, Device, Place};
@@ -31,8 +31,8 @@ pub struct Rungs {
     rungs: Vec<Rung>,
     /// Pairs that each rung except the last leaves.
     left: Vec<Left>,
-    /// Index into [`LEFT`] of each.
-    names: Vec<usize>,
+    /// Names of the lists.
+    names: &'static Names,
     /// Pairs that a long list in f64 leaves to be settled in a launch of their own; none without
     /// f64. In a query they have no room, and there is no launch, until such a list was seen.
     asked: Option<Left>,
@@ -47,31 +47,30 @@ pub struct Rungs {
 }
 
 impl Rungs {
-    /// Allocates the lists.
+    /// Allocates the lists, with these names.
     ///
     /// # Errors
     /// Device errors.
     pub fn new(
         device: &Device,
-        certified: Option<&Certified>,
+        (certified, names): (Option<&Certified>, &'static Names),
         capacities: &Capacities,
     ) -> Result<Self, Error> {
         let rungs = certified.map_or(Vec::new(), |certified| rungs(certified).to_vec());
         let leaving = rungs.split_last().map_or(&[][..], |(_, before)| before);
-        let names: Vec<_> = leaving.iter().map(|rung| rung.left()).collect();
         let is_apart = certified.is_some_and(Certified::is_apart);
         let of = |rung: &Rung| {
             if is_apart {
-                lists(device, LEFT[rung.left()], capacities.left).map(Left::Begun)
+                lists(device, names.left[rung.left()], capacities.left).map(Left::Begun)
             } else {
-                lists(device, LEFT[rung.left()], capacities.left).map(Left::Pairs)
+                lists(device, names.left[rung.left()], capacities.left).map(Left::Pairs)
             }
         };
         let left = leaving.iter().map(of).collect::<Result<_, Error>>()?;
         let asked = || lists(device, ASKED, capacities.asked).map(Left::Pairs);
         let asked = rungs.contains(&Rung::Isolate64).then(asked).transpose()?;
         let approaches = certified.is_some_and(|certified| certified.approaching);
-        let approaching = approaches.then(|| Approaching::new(device, capacities)).transpose()?;
+        let approaching = approaches.then(|| Approaching::new(device, names, capacities)).transpose()?;
         let tolerances = device.of(purpose::TOLERANCES).buffer(0)?;
         let radii = device.of(purpose::RADII).buffer(0)?;
         let certified = certified.copied().unwrap_or_default();
@@ -133,9 +132,10 @@ impl Rungs {
 
     /// Returns the lists, with names.
     pub fn between(&self) -> impl Iterator<Item = Named<'_>> {
-        let left = self.names.iter().zip(&self.left);
-        let left = left.flat_map(|(&at, left)| left.named(LEFT[at].map(|(name, ..)| name)));
-        left.chain(self.approaching.iter().flat_map(Approaching::named))
+        let left = self.rungs.iter().zip(&self.left);
+        let left =
+            left.flat_map(|(rung, left)| left.named(self.names.left[rung.left()].map(|(name, ..)| name)));
+        left.chain(self.approaching.iter().flat_map(|own| own.named(self.names)))
     }
 
     /// Launches the rungs, the first one over `first`. For a sample it launches only the rungs that

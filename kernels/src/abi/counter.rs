@@ -214,6 +214,51 @@ counters! { 0;
     VF_OPEN_NEAR,
     /// Edge/edge pairs that they leave open.
     EE_OPEN_NEAR,
+    /// Candidate triangle pairs that may hold two features without a thickness, in a step in which such
+    /// may meet and others have one.
+    THIN_PAIRS,
+    /// Candidate triangle pairs of which one has a thickness.
+    THICK_PAIRS,
+    /// Vertex/face candidates of the first.
+    VF_THIN,
+    /// Edge/edge candidates of the first.
+    EE_THIN,
+    /// Vertex/face pairs without a thickness, if a body has vertices with one and without.
+    VF_ALL_THIN,
+    /// Edge/edge pairs without a thickness.
+    EE_ALL_THIN,
+    /// Vertex/face pairs with a thickness.
+    VF_SOME_THICK,
+    /// Edge/edge pairs with a thickness.
+    EE_SOME_THICK,
+    /// Vertex/face pairs without a thickness that are not excluded.
+    VF_THIN_KEPT,
+    /// Edge/edge pairs without a thickness that are not excluded.
+    EE_THIN_KEPT,
+    /// Vertex/face pairs without a thickness that f32 leaves to f64.
+    VF_THIN_ESCALATED,
+    /// Edge/edge pairs without a thickness that f32 leaves to f64.
+    EE_THIN_ESCALATED,
+    /// As [`VF_BEGIN_BEYOND`], without a thickness; so below.
+    VF_THIN_BEYOND,
+    /// As [`EE_BEGIN_BEYOND`].
+    EE_THIN_BEYOND,
+    /// As [`VF_BEGIN_NEAR`].
+    VF_THIN_NEAR,
+    /// As [`EE_BEGIN_NEAR`].
+    EE_THIN_NEAR,
+    /// As [`VF_UNBOUNDED`].
+    VF_THIN_UNBOUNDED,
+    /// As [`EE_UNBOUNDED`].
+    EE_THIN_UNBOUNDED,
+    /// As [`VF_ADVANCING`].
+    VF_THIN_ADVANCING,
+    /// As [`EE_ADVANCING`].
+    EE_THIN_ADVANCING,
+    /// As [`VF_APPROACHING`].
+    VF_THIN_APPROACHING,
+    /// As [`EE_APPROACHING`].
+    EE_THIN_APPROACHING,
 }
 
 /// The counters of a frame, in device memory.

@@ -39,6 +39,45 @@ arguments! {
         /// Out: the others.
         turning: Output<Pair>,
     }
+    /// `narrow_divide_thick`: candidates that may hold two features without a thickness, and those with
+    /// one.
+    DivideThickArgs {
+        /// The thickness of every vertex.
+        radii: Span<f64>,
+        /// Vertex indices of every triangle.
+        faces: Span<[u32; 3]>,
+        /// Candidate triangle pairs.
+        pairs: Output<Pair>,
+        /// Out: those of which each triangle has a vertex without a thickness.
+        thin: Output<Pair>,
+        /// Out: those of which one triangle has a vertex with a thickness.
+        thick: Output<Pair>,
+    }
+    /// `narrow_sift_thick`: pairs of features without a thickness, and those with one.
+    SiftThickArgs {
+        /// The thickness of every vertex.
+        radii: Span<f64>,
+        /// Vertex indices of every triangle.
+        faces: Span<[u32; 3]>,
+        /// End points of every edge.
+        edges: Span<[u32; 2]>,
+        /// Vertex/face candidates of thin pairs of triangles.
+        thin_vf: Output<Pair>,
+        /// Edge/edge candidates of those.
+        thin_ee: Output<Pair>,
+        /// Vertex/face candidates of thick pairs of triangles.
+        thick_vf: Output<Pair>,
+        /// Edge/edge candidates of those.
+        thick_ee: Output<Pair>,
+        /// Out: those of `thin_vf` of which no vertex has a thickness.
+        all_thin_vf: Output<Pair>,
+        /// Out: those of `thin_ee` of which no vertex has one.
+        all_thin_ee: Output<Pair>,
+        /// Out: those of `thick_vf` of which a vertex has one.
+        some_thick_vf: Output<Pair>,
+        /// Out: those of `thick_ee` of which a vertex has one.
+        some_thick_ee: Output<Pair>,
+    }
     /// `narrow_turning_features`: triangle pairs of bodies that turn, to pairs of features.
     TurningFeaturesArgs {
         /// Positions.

@@ -158,8 +158,8 @@ impl<'a> RankDetector<'a> {
 
     fn answer(&mut self, query: &Query) -> Result<RankAnswer, RankError> {
         question::same(self.ranks, query)?;
-        let (pieces, left_out) = (&self.pieces, &self.left_out);
-        self.ranks.run(|| question::check(query, pieces, left_out, self.lacks_ends))?;
+        let pieces = &self.pieces;
+        self.ranks.run(|| question::check(query, pieces, self.lacks_ends))?;
         let reach = question::reach(query, &self.tolerances);
         if self.reach.is_none_or(|exchanged| exchanged < reach) {
             self.exchange(reach)?;

@@ -1,7 +1,6 @@
 //! Queries that ranks can share.
 
 use crate::error::{RankError, refused};
-use crate::ghosts::may_meet;
 use crate::piece::Piece;
 use crate::ranks::Ranks;
 use crate::setup;
@@ -24,12 +23,7 @@ pub(crate) fn same(ranks: &Ranks, query: &Query) -> Result<(), RankError> {
 /// # Errors
 /// As of [`Query::check`]. Also for a query of whole bodies, for a solver whose rows depend on the
 /// search, and for a query in motion of bodies without two ends.
-pub(crate) fn check(
-    query: &Query,
-    pieces: &[Piece],
-    left_out: &[[usize; 2]],
-    lacks_ends: bool,
-) -> Result<(), Error> {
+pub(crate) fn check(query: &Query, pieces: &[Piece], lacks_ends: bool) -> Result<(), Error> {
     query.check()?;
     if let Query::Distance(_) | Query::BodyPairs(_) | Query::BodyDistances(_) = query {
         let what = format!("a {} query over ranks", query.kind());
@@ -49,26 +43,6 @@ pub(crate) fn check(
         if lacks_ends {
             let what = format!("no body of the frame has two ends, and the query is {}", query.kind());
             return Err(refused(what, "give each body that moves both ends of the step"));
-        }
-        // A part of the scene may lack the pair: the whole scene decides, on every rank.
-        let radius = |at: usize| pieces[at].body.thickness().largest();
-        let is_thick = (0..pieces.len()).any(|at| radius(at) > 0.0);
-        let thin = || (0..pieces.len()).filter(|&at| radius(at) == 0.0 && pieces[at].whole[1] > 0);
-        let pair = || {
-            thin().find_map(|a| {
-                let other = thin().find(|&b| a <= b && may_meet(pieces, left_out, a, b));
-                other.map(|b| [a, b].map(|at| pieces[at].body.name()))
-            })
-        };
-        if is_thick
-            && certified.min_separation == 0.0
-            && let Some([a, b]) = pair()
-        {
-            let what = format!("{a} and {b} have no thickness, and other bodies have");
-            return Err(refused(
-                what,
-                "give one of them a thickness, or the query a minimum separation above 0",
-            ));
         }
         let turning = || {
             pieces.iter().find(|piece| {

@@ -1,11 +1,11 @@
-//! Submissions of steps of bodies with a thickness: they test another query than the one that names them.
+//! Submissions of steps of bodies with a thickness.
 
 use super::*;
 use nearmiss::research::DetectorExt;
 use nearmiss::{Continuous, Detector, Earliest};
 
-/// A thickness is a separation of a query without one. It is found by the query that was given: on the
-/// device, in a plan, and in the figures.
+/// The answer is found by its query: on the device, in a plan, and in the figures. A query with a
+/// separation is another one.
 #[test]
 fn a_step_of_thick_bodies_is_found_by_its_query() {
     let (scene, id, ends) = pair(120);
@@ -44,7 +44,17 @@ fn a_step_of_thick_bodies_is_found_by_its_query() {
         }
     }
     let apart = support::asked::certified(queries[0], |own| own.min_separation = 0.01);
-    let error = detector.prepare(&[(id, input)], &[queries[0], apart]).expect_err("one shape").to_string();
+    detector.prepare(&[(id, input)], &[queries[0], apart]).expect("two shapes");
+    detector.submit().expect("submitted");
+    assert!(detector.on_device(&queries[0]).is_some() && detector.on_device(&apart).is_some());
+    for query in [queries[0], apart] {
+        let (found, wanted) =
+            (detector.collect(&query).expect("an answer"), by_host.query(&query).expect("one"));
+        assert_eq!(found.rows, wanted.rows, "{query:?}");
+    }
+    let (touching, other) =
+        (support::asked::certified(queries[0], |own| own.tolerance = Some(0.5)), queries[0]);
+    let error = detector.prepare(&[(id, input)], &[touching, other]).expect_err("one shape").to_string();
     assert!(error.contains("differ in more than numbers"), "{error}");
     detector.prepare(&[(id, input)], &queries).expect("prepared");
     for query in &queries {

@@ -36,6 +36,29 @@ fn radii_of_a_file_and_of_the_command_line_count() {
     assert_eq!(rows(&[&two[..], &["0.2"]].concat()), 0);
 }
 
+/// A step of two bodies that touch, and of one that comes within its radius.
+#[test]
+fn bodies_with_one_and_without_are_in_one_step() {
+    let folder = Folder::new("scene-thickness-mixed");
+    let at = |name: &str, z: f64| {
+        folder.write(&format!("{name}.obj"), &format!("v 0 0 {z}\nv 1 0 {z}\nv 0 1 {z}\nf 1 2 3\n"))
+    };
+    for (name, z) in [("low", 0.0), ("falls", 1.0), ("fell", -1.0), ("high", 4.0), ("lower", 1.5)] {
+        at(name, z);
+    }
+    let step = |thickness: &str| {
+        let text = format!(
+            "[[body]]\nmesh = \"low.obj\"\nkind = \"fixed\"\n\
+             [[body]]\nmeshes = [\"falls.obj\", \"fell.obj\"]\n\
+             [[body]]\nmeshes = [\"high.obj\", \"lower.obj\"]\n{thickness}\n"
+        );
+        summary(&["detect", &folder.write("scene.toml", &text), "--continuous", "--json"])
+    };
+    let counts =
+        ["", "thickness = 1.75"].map(|thickness| step(thickness)["contacts"].as_u64().expect("a count"));
+    assert!(0 < counts[0] && counts[0] < counts[1], "{counts:?}");
+}
+
 #[test]
 fn a_thickness_that_cannot_be_is_refused() {
     let folder = Folder::new("scene-thickness-bad");

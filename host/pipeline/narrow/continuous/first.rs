@@ -4,14 +4,16 @@
 //! later. Those that may begin at that time are solved again, for contacts. So there is no second
 //! broad phase, and without a time every list is empty.
 
-use super::ContinuousNarrow;
+use super::{ContinuousNarrow, Tested};
 use crate::device::Device;
 use crate::error::Error;
 use crate::pipeline::counts::FrameCounters;
 use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List};
+use crate::pipeline::narrow::thin::Thin;
 use crate::pipeline::narrow::{NarrowContext, growable};
 use crate::pipeline::precision::Precision;
+use crate::query::Certified;
 use nearmiss_kernels::abi::{CullArgs, FirstHitsArgs, FirstPairsArgs, Hit, Pair, Span, counter};
 use nearmiss_kernels::entry::narrow_first_hits;
 
@@ -23,6 +25,8 @@ pub struct SecondPass {
     counters: FrameCounters,
     /// Pairs that may begin at the earliest time.
     pairs: [List<Pair>; 2],
+    /// Those without a thickness, in a scene in which the others have one.
+    thin: Option<[List<Pair>; 2]>,
     /// Those of bodies that turn.
     turning: [List<Pair>; 2],
     /// Contacts of these pairs, also later ones.
@@ -30,10 +34,17 @@ pub struct SecondPass {
 }
 
 impl SecondPass {
-    fn new(device: &Device) -> Result<SecondPass, Error> {
+    fn new(device: &Device, is_mixed: bool) -> Result<SecondPass, Error> {
         let pairs = |name, counter, room| List::<Pair>::new(device, name, counter, room);
         let hits = |name, counter| List::<Hit>::new(device, name, counter, FEW);
+        let thin = || {
+            Ok::<_, Error>([
+                pairs("thin vertex/face pairs at the earliest time", counter::VF_THIN, FEW)?,
+                pairs("thin edge/edge pairs at the earliest time", counter::EE_THIN, FEW)?,
+            ])
+        };
         Ok(SecondPass {
+            thin: is_mixed.then(thin).transpose()?,
             counters: FrameCounters::new(device)?,
             pairs: [
                 pairs("vertex/face pairs at the earliest time", counter::VF_SURVIVORS, FEW)?,
@@ -62,7 +73,7 @@ impl ContinuousNarrow {
             return Ok(false);
         }
         if wanted && self.second.is_none() {
-            self.second = Some(SecondPass::new(device)?);
+            self.second = Some(SecondPass::new(device, self.thin.is_some())?);
             [&mut self.vf_hits, &mut self.ee_hits]
                 .into_iter()
                 .try_for_each(|list| list.reserve(device, FEW))?;
@@ -79,8 +90,12 @@ impl ContinuousNarrow {
 
     /// Returns the lists that the second pass fills, by these counters.
     pub(super) fn lists_of_second(&mut self) -> Vec<&mut dyn GrowableOutput> {
-        let Some(SecondPass { pairs, turning, hits, .. }) = &mut self.second else { return Vec::new() };
-        growable(pairs).chain(growable(turning)).chain(growable(hits)).chain(self.rungs.lists()).collect()
+        let Some(SecondPass { pairs, thin, turning, hits, .. }) = &mut self.second else {
+            return Vec::new();
+        };
+        let pairs = growable(pairs).chain(growable(thin.iter_mut().flatten())).chain(growable(turning));
+        let rungs = self.rungs.lists().chain(self.thin.iter_mut().flat_map(Thin::left));
+        pairs.chain(growable(hits)).chain(rungs).collect()
     }
 
     /// Launches the second pass, behind the whole first one.
@@ -93,14 +108,20 @@ impl ContinuousNarrow {
         let (earliest, counters) = (earliest.span(), second.counters.counters());
         let Some(second) = &self.second else { return Ok(()) };
         let again = NarrowContext { counters, ..*given };
-        let pairs = second.pairs.each_ref();
-        let turning = second.turning.each_ref();
-        self.keep_pairs(&again, (self.tested(given.features), given), (pairs, earliest), self.isolates())?;
+        let (pairs, turning) = (second.pairs.each_ref(), second.turning.each_ref());
+        let cut = Cut { tested: self.tested(given.features), may: pairs, cuts: self.isolates() };
+        self.cut(&again, given, (&cut, self.solver.certified()), earliest)?;
+        if let (Some(of_thin), Some(may)) = (&self.thin, &second.thin) {
+            let cut = Cut { tested: of_thin.tested(), may: may.each_ref(), cuts: true };
+            self.cut(&again, given, (&cut, Some(of_thin.certified())), earliest)?;
+        }
         if !given.frames.turns.is_empty() {
-            self.keep_pairs(&again, (self.turning.tested(), given), (turning, earliest), false)?;
+            let cut = Cut { tested: self.turning.tested(), may: turning, cuts: false };
+            self.cut(&again, given, (&cut, self.solver.certified()), earliest)?;
         }
         let [vf, ee] = second.hits.each_ref();
-        self.launch_solver(&again, [pairs, turning], ([vf, ee], Span::EMPTY))?;
+        let tested = Tested { pairs, thin: second.thin.as_ref().map(<[_; 2]>::each_ref), turning };
+        self.launch_solver(&again, &tested, ([vf, ee], Span::EMPTY))?;
         let args = FirstHitsArgs {
             vf: vf.output(counters),
             ee: ee.output(counters),
@@ -111,15 +132,15 @@ impl ContinuousNarrow {
         launch::striding::<narrow_first_hits>(given.device, vf.capacity() + ee.capacity(), &args)
     }
 
-    /// Keeps tested pairs of the first pass that may begin at the earliest time; all of them unless
-    /// `cuts`.
-    fn keep_pairs<R: Precision>(
+    /// Keeps tested pairs of the first pass that may begin at the earliest time.
+    fn cut<R: Precision>(
         &self,
         again: &NarrowContext<R>,
-        ([vf, ee], first): ([&List<Pair>; 2], &NarrowContext<R>),
-        ([may_vf, may_ee], earliest): ([&List<Pair>; 2], Span<u64>),
-        cuts: bool,
+        first: &NarrowContext<R>,
+        (cut, certified): (&Cut, Option<&Certified>),
+        earliest: Span<u64>,
     ) -> Result<(), Error> {
+        let ([vf, ee], [may_vf, may_ee]) = (cut.tested, cut.may);
         let tested = CullArgs {
             frames: again.frames,
             faces: again.faces,
@@ -128,10 +149,20 @@ impl ContinuousNarrow {
             ee: ee.output(first.counters),
             may_vf: may_vf.output(again.counters),
             may_ee: may_ee.output(again.counters),
-            params: self.solver.certified().copied().unwrap_or_default().params(),
+            params: certified.copied().unwrap_or_default().params(),
             known: earliest,
         };
-        let args = FirstPairsArgs { tested, all: u32::from(!cuts), pad: 0 };
+        let args = FirstPairsArgs { tested, all: u32::from(!cut.cuts), pad: 0 };
         launch::striding::<R::FirstPairs>(again.device, vf.capacity() + ee.capacity(), &args)
     }
+}
+
+/// Pairs of one solver.
+struct Cut<'a> {
+    /// Those of the first pass.
+    tested: [&'a List<Pair>; 2],
+    /// The lists of those that stay.
+    may: [&'a List<Pair>; 2],
+    /// Whether some are dropped; otherwise all stay.
+    cuts: bool,
 }

@@ -6,8 +6,10 @@ use crate::error::Error;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::list::List;
 use crate::pipeline::narrow::Capacities;
+use crate::pipeline::narrow::left::USUAL;
 use crate::pipeline::narrow::rungs::Rungs;
 use crate::pipeline::narrow::start::StartCheck;
+use crate::pipeline::narrow::thin::{Thin, is_mixed, solver_in};
 use crate::pipeline::narrow::turning::Turning;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::purpose;
@@ -15,25 +17,53 @@ use crate::query::{Certified, ContinuousSolver};
 use nearmiss_kernels::abi::{Counter, Hit, counter, earliest};
 
 impl ContinuousNarrow {
-    /// Allocates the phase for all contacts.
+    /// Allocates the phase for all contacts of a scene.
     ///
     /// # Errors
     /// Device errors.
-    pub fn all(device: &Device, solver: ContinuousSolver, few: usize) -> Result<Self, Error> {
-        ContinuousNarrow::new(device, solver, Capacities::usual(few))
+    pub fn all(
+        device: &Device,
+        solver: ContinuousSolver,
+        layout: &Layout,
+        few: usize,
+    ) -> Result<Self, Error> {
+        ContinuousNarrow::in_scene(device, (solver, layout), || Capacities::usual(few))
     }
 
     /// Allocates the phase for the smallest time alone.
     ///
     /// # Errors
     /// Device errors.
-    pub fn first(device: &Device, solver: ContinuousSolver, few: usize) -> Result<Self, Error> {
-        let capacities = Capacities { hits: [0, 0], ..Capacities::usual(few) };
-        let narrow = ContinuousNarrow::new(device, solver, capacities)?;
+    pub fn first(
+        device: &Device,
+        solver: ContinuousSolver,
+        layout: &Layout,
+        few: usize,
+    ) -> Result<Self, Error> {
+        let capacities = || Capacities { hits: [0, 0], ..Capacities::usual(few) };
+        let narrow = ContinuousNarrow::in_scene(device, (solver, layout), capacities)?;
         Ok(ContinuousNarrow {
             earliest: Some(device.of(purpose::EARLIEST).buffer(earliest::WORDS as usize)?),
             ..narrow
         })
+    }
+
+    /// Allocates it by the thickness of a scene: its features may have none, one, or some one.
+    fn in_scene(
+        device: &Device,
+        (solver, layout): (ContinuousSolver, &Layout),
+        capacities: impl Fn() -> Capacities,
+    ) -> Result<Self, Error> {
+        let is_thick = layout.is_thick();
+        let mut narrow = ContinuousNarrow::new(device, solver_in(solver, is_thick), capacities())?;
+        narrow.is_thick = is_thick;
+        if layout.is_uneven {
+            narrow.rungs.thicken(device, &layout.radii)?;
+        }
+        if let Some(certified) = solver.certified().filter(|_| is_mixed(solver, layout)) {
+            narrow.thin = Some(Thin::new(device, certified, layout, &capacities())?);
+        }
+        Ok(narrow)
     }
 
     /// Allocates the lists with these capacities.
@@ -59,7 +89,7 @@ impl ContinuousNarrow {
             kept: None,
             vf_hits,
             ee_hits,
-            rungs: Rungs::new(device, solver.certified(), &capacities)?,
+            rungs: Rungs::new(device, (solver.certified(), &USUAL), &capacities)?,
             turning: Turning::new(device)?,
             counters: [
                 counter::VF_OPEN,
@@ -72,6 +102,7 @@ impl ContinuousNarrow {
             finest: None,
             below_precision: None,
             is_thick: false,
+            thin: None,
             earliest: None,
             bound: None,
             second: None,
@@ -88,18 +119,6 @@ impl ContinuousNarrow {
             List::new(device, "vertex/face contacts", counter::VF_HITS, room[0])?,
             List::new(device, "edge/edge contacts", counter::EE_HITS, room[1])?,
         ])
-    }
-
-    /// Makes it a phase of vertices with a thickness, if they have one.
-    ///
-    /// # Errors
-    /// Device errors.
-    pub fn of_thick(mut self, device: &Device, layout: &Layout) -> Result<Self, Error> {
-        self.is_thick = layout.is_thick();
-        if layout.is_uneven {
-            self.rungs.thicken(device, &layout.radii)?;
-        }
-        Ok(self)
     }
 
     /// Adds the check of the start: it counts crossing pairs, with room for `few` pairs that

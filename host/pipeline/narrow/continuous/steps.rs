@@ -47,16 +47,20 @@ impl ContinuousNarrow {
             ("vertex/face pairs that are not excluded", counter::VF_KEPT),
             ("edge/edge pairs that are not excluded", counter::EE_KEPT),
         ];
-        self.kept = Some(Kept::new(device, names, Capacities::usual(few).survivors)?);
+        let capacities = Capacities::usual(few);
+        self.kept = Some(Kept::new(device, names, capacities.survivors)?);
         self.turning.exclude(device)?;
+        if let Some(thin) = &mut self.thin {
+            thin.exclude(device, &capacities)?;
+        }
         self.start.as_mut().map_or(Ok(()), |start| start.exclude(device, few / 4))
     }
 
-    /// Returns the steps, in order. With a separation there is no cull: signs could reject no pair.
+    /// Returns the steps, in order. Pairs with a separation have no cull: signs could reject none.
     pub(super) fn all_steps(&self) -> impl Iterator<Item = Step> {
         let step = |is_there: bool, step| is_there.then_some(step);
         let between = [
-            step(self.survivors.is_some(), Step::Cull),
+            step(self.survivors.is_some() || self.thin.is_some(), Step::Cull),
             step(self.kept.is_some(), Step::Exclude),
             step(self.start.is_some(), Step::Start),
         ];
@@ -75,6 +79,9 @@ impl ContinuousNarrow {
     pub(super) fn keep<R: Precision>(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
         if let Some(kept) = &self.kept {
             kept.run(given, self.may_meet(given.features))?;
+        }
+        if let Some(thin) = &self.thin {
+            thin.keep(given)?;
         }
         self.turning.keep(given)
     }

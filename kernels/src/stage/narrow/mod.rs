@@ -18,6 +18,7 @@
 //! [`abreast`] and [`separate`]: they find contacts and bound their first times, with proof. The paper's solver is [`solve`], by the cubic.
 //! Pairs of bodies that turn take another way: [`divide`] takes them out of the candidates, and
 //! [`turning`] tests them on their paths.
+//! [`divide_thick`] parts features without a thickness from those with one, which have a separation.
 //! A scene that excludes pairs has [`mod@exclude`] behind the signs of triangles, and before a solver.
 //! A query of what approaches has [`mod@approach`] before its solver.
 //! A submission of an earliest query has [`mod@first`] behind its solver, on request.
@@ -32,6 +33,7 @@ pub mod climb;
 pub mod cull;
 pub mod discrete;
 pub mod divide;
+pub mod divide_thick;
 pub mod exclude;
 pub mod features;
 pub mod first;

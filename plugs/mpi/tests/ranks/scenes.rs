@@ -143,6 +143,7 @@ fn thick(points: &[[f64; 3]], faces: &[[u32; 3]]) -> Case {
     let scene = Scene::from(vec![
         body("thick", [0.0; 3]).with_thickness(0.01),
         body("thin", [0.3, 0.0, 0.02]).with_thickness(0.002),
+        body("without", [-0.3, 0.1, 0.03]),
     ]);
     Case { name: "with a thickness", scene, edge: 1.0 / 16.0 }
 }
