@@ -4,6 +4,8 @@
 mod alike;
 mod lent;
 mod lists;
+mod mixed;
+mod mixed_lent;
 mod motion;
 mod touching;
 mod ways;
