@@ -115,7 +115,7 @@ class Way:
             answer = self.detector.query(query)
             wait = (time.perf_counter() - before) * 1e3
             summary = self.detector.summary(answer)
-            rows = summary["contacts"] if name != "earliest" else int(answer is not None)
+            rows = summary["contacts"] if name != "earliest" else int(summary.get("earliest_toi") is not None)
             found.append((rows, summary["hash"], summary["ms"]["total"], wait))
         return found[WARM:]
 

@@ -6,6 +6,7 @@ mod lent;
 mod lists;
 mod mixed;
 mod mixed_lent;
+mod mixed_used;
 mod motion;
 mod touching;
 mod ways;

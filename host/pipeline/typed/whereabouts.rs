@@ -102,9 +102,10 @@ impl<R: Precision> SceneMemory<R> {
         Ok(all.into_iter().flatten().reduce(both))
     }
 
-    /// Returns the words of these checks, for kernels: of the first arrays, and of the others.
+    /// Returns the words of the last frame's checks, for kernels: of the first arrays, and of the
+    /// others.
     pub fn seen_words(&self) -> [Span<u64>; 2] {
-        let mut words = self.arrays().map(|arrays| arrays.seen.span()).filter(|words| !words.is_empty());
+        let mut words = self.arrays().filter(|arrays| arrays.any).map(|arrays| arrays.seen.span());
         [words.next(), words.next()].map(|words| words.unwrap_or(Span::EMPTY))
     }
 }
