@@ -124,13 +124,14 @@ mod tests {
 
     #[test]
     fn boxes_of_bodies_that_deform_hold_the_step_and_others_are_named() {
+        type Fault<'a> = Box<dyn Fn(&mut Instances) + 'a>;
         checked(|_| ()).expect("boxes hold the step");
         let shrink = |instances: &mut Instances, at: usize| {
             let mut nodes = instances.nodes.read(instances.nodes.len()).expect("read");
             nodes[at].volume.hi = nodes[at].volume.lo;
             instances.nodes.write(&nodes).expect("written");
         };
-        let faults: [(&str, Box<dyn Fn(&mut Instances)>); 4] = [
+        let faults: [(&str, Fault); 4] = [
             ("volume 0", Box::new(|own| shrink(own, tile_and_root(own).0))),
             ("volume 2", Box::new(|own| shrink(own, tile_and_root(own).1))),
             (

@@ -140,7 +140,7 @@ fn everything_is_that_of_placed_vertices() {
             let mut scene = scene_of(16, &mut rng, world, count, filters);
             let cloths = with_cloths(&mut rng, &mut scene, world, 1 + (at + count) % 3, filters);
             let mut both = Both::new(&engine(), &scene);
-            for frame in 0..3 {
+            for frame in 0..2 {
                 let ends = cloths.ends(&mut rng, world);
                 let rigid = steps(&mut rng, &scene, world, ways);
                 let mut all = cloths.motions(&ends, true);

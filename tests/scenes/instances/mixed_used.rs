@@ -27,15 +27,18 @@ fn scenes_of_one_kind_have_nothing_of_the_other() {
         let bodies = vec![Body::deformable(ball()), Body::deformable(sphere(12, 1.0, [0.7, 0.0, 0.0]))];
         let mut soft = Detector::new(engine(), bodies).expect("a detector");
         let (kernels, buffers) = used(&mut soft, &query);
-        let of_instances = ["refit_meshes", "fit_bodies", "fit_moving", "traverse_moving", "traverse_vertices"];
+        let of_instances =
+            ["refit_meshes", "fit_bodies", "fit_moving", "traverse_moving", "traverse_vertices"];
         let is_one = |name: &&&str| of_instances.iter().any(|start| name.starts_with(start));
         assert_eq!(kernels.iter().find(is_one), None, "{query:?}");
-        let meshes = ["meshes in", "mesh and place", "bodies that deform", "meshes that deform", "candidates"];
+        let meshes =
+            ["meshes in", "mesh and place", "bodies that deform", "meshes that deform", "candidates"];
         let is_one = |(what, _): &&(String, u64)| {
             meshes[..4].iter().any(|of| what.contains(of)) || what.ends_with("of vertices of candidates")
         };
         assert_eq!(buffers.iter().find(is_one), None, "{query:?}");
-        let vertices = buffers.iter().find(|(what, _)| what == "positions of all vertices").expect("vertices");
+        let vertices =
+            buffers.iter().find(|(what, _)| what == "positions of all vertices").expect("vertices");
         let count: usize = soft.scene().bodies().iter().map(Body::vertex_count).sum();
         let ends = if query.kind().is_at_rest() { 1 } else { 2 };
         assert_eq!(vertices.1, (ends * count * 32) as u64, "{query:?}");
