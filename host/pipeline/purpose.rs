@@ -2,6 +2,8 @@
 
 /// Positions of vertices.
 pub const VERTICES: &str = "positions of all vertices";
+/// Positions of bodies that deform, if others are instances.
+pub const DEFORMING: &str = "positions of bodies that deform";
 /// Positions at t = 0 alone, if vertices have two ends.
 pub const STARTS: &str = "positions of all vertices at t = 0";
 /// Thickness of vertices.

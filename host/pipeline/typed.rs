@@ -16,6 +16,7 @@ mod second;
 mod submit;
 #[cfg(test)]
 mod submitted;
+mod whereabouts;
 
 pub use found::{Found, Hits, Listed};
 pub use submit::{Submits, not_prepared};
@@ -31,6 +32,7 @@ use crate::error::Error;
 use crate::query::Query;
 use crate::scene::Body;
 use crate::stages::{Stage, Stages};
+use nearmiss_kernels::math::Vec3;
 use query::QueryMemory;
 use scene::{BroadKey, SceneMemory};
 #[cfg(test)]
@@ -270,11 +272,11 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
     fn fingerprints(&self, query: usize) -> Result<Vec<(&'static str, u64)>, Error> {
         let own = &self.queries[query];
         let mut prints = self.broad(query).fingerprints()?;
-        if own.is_of_instances && !own.query.kind().is_of_features() {
+        if own.is_of_instances && !own.is_mixed && !own.query.kind().is_of_features() {
             // Candidates name pairs of tiles by their places, which depend on the schedule.
             return Ok(prints);
         }
-        let mut lists = vec![named("traverse", self.scene.candidates(false))];
+        let mut lists = vec![named("traverse", self.scene.candidates(own))];
         lists.extend(own.narrow.between(&self.scene.features));
         for (name, list) in lists {
             prints.push((name, list.fingerprint(&own.last)?));
@@ -287,7 +289,12 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
         if own.is_of_instances {
             let has_ends = !own.is_at_rest();
             let ends = (0..1 + usize::from(has_ends)).map(|end| self.scene.all_positions(own, end));
-            let positions = Checked::new(ends.collect::<Result<_, _>>()?, Vec::new());
+            let ends: Vec<Vec<Vec3<R>>> = ends.collect::<Result<_, _>>()?;
+            if let Some(instances) = self.scene.instances.as_ref().filter(|_| own.is_mixed) {
+                let wide: Vec<_> = ends.iter().map(|end| end.iter().map(|p| p.wide()).collect()).collect();
+                instances.check_deforming(&own.layout.faces, &wide)?;
+            }
+            let positions = Checked::new(ends, Vec::new());
             return self.broad(query).check(&own.layout, &own.layout.faces, &positions);
         }
         let faces = self.scene.faces.read(self.scene.faces.len())?;

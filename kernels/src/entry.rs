@@ -152,6 +152,8 @@ kernels! {
     refit_meshes_vertices_f32: refit_of_meshes::vertices::<f32, B>, [MeshVerticesArgs<f32>], WIDE, 0;
     refit_meshes_vertices_f64: refit_of_meshes::vertices::<f64, B>, [MeshVerticesArgs<f64>], WIDE, 0;
     refit_meshes_corners: refit_of_meshes::corners, [MeshRefitArgs], WIDE, 0;
+    refit_meshes_spread: refit_of_meshes::spread, [MeshSpreadArgs], WIDE, 0;
+    refit_meshes_swept: refit_of_meshes::swept, [MeshSweptArgs], WIDE, 0;
     refit_meshes_nodes: refit_of_meshes::nodes, [MeshRefitArgs], NARROW, 0;
     refit_meshes_records: refit_of_meshes::records, [MeshRefitArgs], NARROW, 0;
     balance_copy: balance::copy, [BalanceArgs], BALANCE, 0;

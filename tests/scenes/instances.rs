@@ -4,6 +4,9 @@
 mod alike;
 mod lent;
 mod lists;
+mod mixed;
+mod mixed_lent;
+mod mixed_used;
 mod motion;
 mod touching;
 mod ways;

@@ -45,7 +45,7 @@ pub fn of(plan: &Plan, layout: &Layout, query: &Query, is_gpu: bool) -> Vec<Left
     put(fixed.is_empty(), "fixed tree", "no body is fixed");
     let (instances, vertices) = (buffer(purpose::INSTANCES), buffer(purpose::VERTICES));
     put(buffer(purpose::REST) && instances, "poses", "no body is rigid");
-    let why = "all bodies are rigid or fixed: each is a mesh and a pose";
+    let why = "rigid and fixed bodies are a mesh and a pose each";
     put(vertices && !instances, "vertices in the scene", why);
     let why = if query.keeps_adjacent() {
         "one body alone: every pair of its triangles is tested"

@@ -18,7 +18,7 @@ pub const STAGES: [(&str, &str); 10] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 116] = [
+const KERNELS: [(&str, &str); 118] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
     ("place_turns", "rotation vectors and paths of bodies that turn"),
     ("place_poses", "poses of instances, from the caller's memory and the host"),
@@ -45,6 +45,8 @@ const KERNELS: [(&str, &str); 116] = [
     ("refit_tiles", "a volume for 16 nodes, for each further level"),
     ("refit_meshes_vertices", "vertices of deformable bodies, for their meshes"),
     ("refit_meshes_corners", "their triangles"),
+    ("refit_meshes_spread", "their vertices, among those of candidates"),
+    ("refit_meshes_swept", "their triangles, and boxes around a step"),
     ("refit_meshes_nodes", "boxes of their nodes, for each level"),
     ("refit_meshes_records", "boxes and radii of their meshes"),
     ("traverse_relations_within", "bodies in the frames of others, if their meshes may be near"),

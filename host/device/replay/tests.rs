@@ -35,6 +35,7 @@ impl Memory {
             counters: Counters::new(self.counters.span()),
             rooms: self.rooms.span(),
             seen: self.seen.span(),
+            posed: Span::EMPTY,
             status: self.status[which].span(),
             first: Span::EMPTY,
             second: Span::EMPTY,

@@ -277,7 +277,7 @@ pub fn instance_phase<R: Precision>(
     device: &Device,
     layout: &Layout,
 ) -> Result<Box<dyn CandidateSearch<R>>, Error> {
-    Ok(Box::new(<instances::BodyGroups>::new(device, layout)?))
+    Ok(Box::new(<instances::BodyGroups>::new(device, layout, instances::MEETING)?))
 }
 
 /// Returns the broad phase of a query of features over bodies as instances, at rest or in motion. At
@@ -291,7 +291,42 @@ pub fn motion_phase<R: Precision>(
     is_at_rest: bool,
     margin: f32,
 ) -> Result<Box<dyn CandidateSearch<R>>, Error> {
-    Ok(Box::new(instances::MotionSearch::new(device, layout, is_at_rest, margin)?))
+    Ok(Box::new(instances::MotionSearch::new(device, layout, instances::MEETING, (is_at_rest, margin))?))
+}
+
+/// Returns the broad phase of a query, but of pairs of bodies, over rigid bodies as instances and
+/// others that deform. At least one deforms. Volumes and boxes of bodies grow by `growth`.
+///
+/// # Errors
+/// Device errors.
+pub fn mixed_phase<R: Precision>(
+    device: &Device,
+    layout: &Layout,
+    (query, bodies): (&Query, &[usize]),
+    growth: Growth,
+) -> Result<Box<dyn CandidateSearch<R>>, Error> {
+    let new = NewMixed { device, layout, query, bodies, growth, precision: std::marker::PhantomData };
+    query.volume().with(new)
+}
+
+/// Arguments for the constructors of mixed ones.
+struct NewMixed<'a, R> {
+    device: &'a Device,
+    layout: &'a Layout,
+    query: &'a Query,
+    bodies: &'a [usize],
+    growth: Growth,
+    precision: std::marker::PhantomData<R>,
+}
+
+impl<R: Precision> WithVolume for NewMixed<'_, R> {
+    type Out = Result<Box<dyn CandidateSearch<R>>, Error>;
+
+    fn with<V: Kernels>(self) -> Self::Out {
+        let NewMixed { device, layout, query, bodies, growth, .. } = self;
+        let is_at_rest = query.kind().is_at_rest();
+        Ok(Box::new(instances::MixedSearch::<V>::new(device, (layout, bodies), is_at_rest, growth)?))
+    }
 }
 
 /// Returns the broad phase of a query of pairs of bodies. At least one body moves. Boxes of bodies

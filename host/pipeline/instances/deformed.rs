@@ -8,7 +8,8 @@ use crate::pipeline::precision::Precision;
 use crate::pipeline::{launch, purpose};
 use crate::scene::{Body, BodyKind};
 use nearmiss_kernels::abi::{
-    InstanceRecord, InstanceTables, MeshRefitArgs, MeshVerticesArgs, NONE, Point, Span,
+    InstanceRecord, InstanceTables, MeshRefitArgs, MeshSweptArgs, MeshVerticesArgs, NONE, Point, Positions,
+    Span,
 };
 use nearmiss_kernels::bvh::tiles::TILE;
 use nearmiss_kernels::entry;
@@ -22,6 +23,8 @@ pub struct Deformed {
     /// Nodes of each level, from the tiles up.
     levels: Vec<Buffer<u32>>,
     meshes: Buffer<u32>,
+    /// First vertices of the bodies where they are placed, and in the scene; how many.
+    ranges: Vec<[u32; 3]>,
 }
 
 /// Returns whether a body's mesh is refitted.
@@ -47,22 +50,24 @@ fn collect(all: &Joined, at: u32, levels: &mut Vec<Vec<u32>>) {
 }
 
 impl Deformed {
-    /// Lists vertices, triangles and nodes of deformable bodies; `None` without such a body.
+    /// Lists vertices, triangles and nodes of deformable bodies; `None` without such a body. `starts`
+    /// has each body's first vertex where vertices are placed.
     ///
     /// # Errors
     /// Device errors.
     pub fn new(
         device: &Device,
-        bodies: &[Body],
+        (bodies, starts): (&[Body], &[u32]),
         layout: &Layout,
         (all, records): (&Joined, &[InstanceRecord]),
     ) -> Result<Option<Self>, Error> {
-        let (mut moves, mut places) = (Vec::new(), Vec::new());
+        let (mut moves, mut places, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
         let (mut levels, mut meshes) = (Vec::new(), Vec::new());
         for (at, _) in bodies.iter().enumerate().filter(|(_, body)| deforms(body)) {
-            let (mesh, from) = (records[at].mesh, layout.starts[at].vertex);
-            let to = all.first_vertices[mesh as usize];
-            moves.extend((0..layout.starts[at + 1].vertex - from).map(|v| [from + v, to + v]));
+            let (mesh, from, in_scene) = (records[at].mesh, starts[at], layout.starts[at].vertex);
+            let (to, count) = (all.first_vertices[mesh as usize], layout.starts[at + 1].vertex - in_scene);
+            moves.extend((0..count).map(|v| [from + v, to + v]));
+            ranges.push([from, in_scene, count]);
             let mut own = Vec::new();
             collect(all, all.meshes[mesh as usize].root, &mut own);
             let tiles = own.first().into_iter().flatten();
@@ -82,7 +87,29 @@ impl Deformed {
             places: device.upload(&places)?,
             levels: levels.iter().map(|nodes| device.upload(nodes)).collect::<Result<_, _>>()?,
             meshes: device.upload(&meshes)?,
+            ranges,
         }))
+    }
+
+    /// Returns each vertex where it is placed, and in the scene.
+    pub fn spread(&self) -> Vec<[u32; 2]> {
+        let of = |&[from, to, count]: &[u32; 3]| (0..count).map(move |v| [from + v, to + v]);
+        self.ranges.iter().flat_map(of).collect()
+    }
+
+    /// Refits the meshes to vertices among those of candidates: around both ends in a step.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn sweep(
+        &self,
+        device: &Device,
+        tables: InstanceTables,
+        (faces, vertices): (Span<[u32; 3]>, Positions<f64>),
+    ) -> Result<(), Error> {
+        let args = MeshSweptArgs { tables, places: self.places.span(), faces, vertices };
+        launch::striding::<entry::refit_meshes_swept>(device, self.places.len(), &args)?;
+        self.refit_nodes(device, tables)
     }
 
     /// Returns the tiles that are refitted; there is one.
@@ -102,13 +129,18 @@ impl Deformed {
     ) -> Result<(), Error> {
         let vertices = MeshVerticesArgs { positions, moves: self.moves.span(), vertices: tables.vertices };
         launch::striding::<R::MeshVertices>(device, self.moves.len(), &vertices)?;
-        let mut args = MeshRefitArgs {
-            tables,
-            places: self.places.span(),
-            nodes: Span::EMPTY,
-            meshes: self.meshes.span(),
-        };
+        let args = self.args(tables);
         launch::striding::<entry::refit_meshes_corners>(device, self.places.len(), &args)?;
+        self.refit_nodes(device, tables)
+    }
+
+    fn args(&self, tables: InstanceTables) -> MeshRefitArgs {
+        MeshRefitArgs { tables, places: self.places.span(), nodes: Span::EMPTY, meshes: self.meshes.span() }
+    }
+
+    /// Refits nodes to the boxes of triangles, and meshes to their nodes.
+    fn refit_nodes(&self, device: &Device, tables: InstanceTables) -> Result<(), Error> {
+        let mut args = self.args(tables);
         for nodes in &self.levels {
             args.nodes = nodes.span();
             launch::striding::<entry::refit_meshes_nodes>(device, nodes.len(), &args)?;

@@ -85,7 +85,7 @@ impl MeshTiles {
         let leaves: Vec<MeshLeaf> = order.iter().zip(&triangles).map(leaf).collect();
         MeshTiles {
             columns: columns(&leaves),
-            record: MeshRecord { centre, radius: ROOT_3 * largest, lo, hi, root: 0, pad: [0; 3] },
+            record: MeshRecord { centre, radius: ROOT_3 * largest, lo, hi, ..MeshRecord::default() },
             leaves,
             triangles,
             vertices: (0..positions.len() as u32).map(|v| Vec3(point(v)).into()).collect(),

@@ -1,6 +1,7 @@
 //! Instances: bodies as meshes with poses. A mesh is on the device once, however many bodies have it.
 //! A body takes some 200 bytes, and no memory for a vertex or a triangle.
 
+mod check;
 mod deformed;
 mod mesh;
 mod motion;
@@ -11,7 +12,7 @@ pub use motion::InMotion;
 
 use super::layout::Layout;
 use super::placing::DeviceArrays;
-use super::purpose;
+use super::{launch, purpose};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::precision::Precision;
@@ -20,8 +21,9 @@ use deformed::{Deformed, deforms};
 use mesh::MeshTiles;
 use nearmiss_kernels::abi::{
     InstanceFrame, InstanceRecord, InstanceTables, MeshLeaf, MeshNode, MeshRecord, MeshTriangle, Point,
-    PoseRecord, Span, TileBox,
+    PoseRecord, Positions, Span, TileBox,
 };
+use nearmiss_kernels::entry::refit_meshes_spread;
 use nearmiss_kernels::math::{Vec3, rigid};
 use poses::Poses;
 use std::collections::HashMap;
@@ -76,19 +78,29 @@ fn shared(bodies: &[Body]) -> Vec<Option<usize>> {
 }
 
 impl Instances {
-    /// Uploads meshes and poses. `found` has two poses for each body whose poses only the device has;
+    /// Uploads meshes and poses. `starts` has each body's first vertex where vertices are placed; only
+    /// those of bodies that deform are read. `found` has two poses for each body whose poses only the device has;
     /// it is empty without such.
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(device: &Device, bodies: &[Body], layout: &Layout, found: &[Pose]) -> Result<Self, Error> {
+    pub fn new(
+        device: &Device,
+        (bodies, starts): (&[Body], &[u32]),
+        layout: &Layout,
+        found: &[Pose],
+    ) -> Result<Self, Error> {
         let firsts = shared(bodies);
         let (mut meshes, mut of_body): (Vec<MeshTiles>, HashMap<usize, u32>) = Default::default();
         for (at, body) in bodies.iter().enumerate().filter(|(at, _)| firsts[*at] == Some(*at)) {
             of_body.insert(at, meshes.len() as u32);
             meshes.push(MeshTiles::new(body.elements(), body.positions_t0()));
         }
-        let all = Joined::of(meshes);
+        let mut all = Joined::of(meshes);
+        for (at, mesh) in of_body.iter().filter(|(at, _)| deforms(&bodies[**at])) {
+            let record = &mut all.meshes[*mesh as usize];
+            (record.deforms, record.body) = (1, *at as u32);
+        }
         let mesh = |at: usize| firsts[at].and_then(|first| of_body.get(&first)).map_or(0, |&mesh| mesh);
         let records: Vec<InstanceRecord> = (0..bodies.len())
             .map(|at| InstanceRecord { mesh: mesh(at), triangle: layout.starts[at].triangle })
@@ -110,7 +122,7 @@ impl Instances {
             vertices: of_meshes.upload(&all.vertices)?,
             poses: Poses::new(device, bodies, found)?,
             tiles: all.tiles,
-            deformed: Deformed::new(device, bodies, layout, (&all, &records))?,
+            deformed: Deformed::new(device, (bodies, starts), layout, (&all, &records))?,
             motion: None,
             boxes: None,
             levels: all.levels,
@@ -130,6 +142,27 @@ impl Instances {
     /// Device errors.
     pub fn refit<R: Precision>(&self, device: &Device, positions: Span<Point<R>>) -> Result<(), Error> {
         self.deformed.as_ref().map_or(Ok(()), |own| own.refit(device, self.tables(), positions))
+    }
+
+    /// Copies vertices of deformable bodies from where they are placed to those of candidates.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn spread(&self, device: &Device, from: Positions<f64>, is_at_rest: bool) -> Result<(), Error> {
+        let args = self.motion.as_ref().and_then(|motion| motion.spread_args(from, is_at_rest));
+        let Some(args) = args else { return Ok(()) };
+        launch::striding::<refit_meshes_spread>(device, args.moves.len() as usize, &args)
+    }
+
+    /// Refits the meshes of deformable bodies to their vertices among those of candidates.
+    ///
+    /// # Errors
+    /// Device errors.
+    pub fn sweep(&self, device: &Device, is_at_rest: bool) -> Result<(), Error> {
+        let Some((deformed, motion)) = self.deformed.as_ref().zip(self.motion.as_ref()) else {
+            return Ok(());
+        };
+        deformed.sweep(device, self.tables(), (motion.faces(), motion.vertices(is_at_rest)))
     }
 
     /// Places all bodies: by poses of the host, or of the caller's memory.
@@ -169,7 +202,8 @@ impl Instances {
         let motion = match &mut self.motion {
             Some(motion) => motion,
             none => {
-                let mut motion = InMotion::new(device, bodies, layout)?;
+                let spread = self.deformed.as_ref().map_or(Vec::new(), Deformed::spread);
+                let mut motion = InMotion::new(device, (bodies, layout), &spread)?;
                 motion.put(device, (bodies, &self.first_vertices), &self.poses)?;
                 none.insert(motion)
             }

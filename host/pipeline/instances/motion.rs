@@ -10,11 +10,11 @@ use crate::error::Error;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::placing::turns::{self, Turns};
 use crate::pipeline::purpose;
-use crate::scene::{Body, DeviceMotion};
+use crate::scene::{Body, BodyKind, DeviceMotion};
 use nearmiss_kernels::abi::{
-    BodiesArgs, CandidateVerticesArgs, InstanceFrame, InstanceMotion, InstanceTables, MovingBodiesArgs,
-    MovingRelation, NodePair, Output, POSED, Pair, Placement, Point, Positions, Span, TurnSource,
-    VertexMotion,
+    BodiesArgs, CandidateVerticesArgs, InstanceFrame, InstanceMotion, InstanceTables, MeshSpreadArgs,
+    MovingBodiesArgs, MovingRelation, NodePair, Output, POSED, Pair, Placement, Point, Positions, Span,
+    TurnSource, VertexMotion,
 };
 
 /// Motions of bodies, and vertices of candidates.
@@ -30,14 +30,21 @@ pub struct InMotion {
     /// The frame in which each vertex was placed last, and the number of the last frame.
     placed_in: Buffer<u64>,
     frame: Buffer<u64>,
+    /// Vertices of bodies that deform: where they are placed, and in the scene; `None` without such.
+    spread: Option<Buffer<[u32; 2]>>,
 }
 
 impl InMotion {
-    /// Allocates the memory of bodies.
+    /// Allocates the memory of bodies. Vertices of those that deform are copied: from where they are
+    /// placed, to their numbers in the scene.
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(device: &Device, bodies: &[Body], layout: &Layout) -> Result<Self, Error> {
+    pub fn new(
+        device: &Device,
+        (bodies, layout): (&[Body], &Layout),
+        spread: &[[u32; 2]],
+    ) -> Result<Self, Error> {
         let of_bodies = device.of(purpose::INSTANCES);
         let vertices = layout.starts[layout.bodies()].vertex as usize;
         let (mut placed_in, mut frame) = (device.of(purpose::PLACED).buffer(vertices)?, of_bodies.buffer(1)?);
@@ -52,6 +59,7 @@ impl InMotion {
             moving: device.buffer(0)?,
             placed_in,
             frame,
+            spread: if spread.is_empty() { None } else { Some(device.of(purpose::REFITTED).upload(spread)?) },
         })
     }
 
@@ -86,7 +94,8 @@ impl InMotion {
             let placement = Placement { vertex, source, pose, from: POSED, ..Placement::default() };
             let moves = body.device_motion().map_or(body.is_moving(), DeviceMotion::is_moving);
             let stands = body.is_device_resident() && !moves;
-            if stands { None } else { turns::source(body, &placement, 0.0) }
+            let is_rigid = body.kind() == BodyKind::Rigid;
+            if stands || !is_rigid { None } else { turns::source(body, &placement, 0.0) }
         };
         let sources: Vec<TurnSource> = bodies.iter().zip(firsts).enumerate().filter_map(source).collect();
         self.turns.hold(device, sources)?;
@@ -137,6 +146,17 @@ impl InMotion {
             poses,
             pad: 0,
         }
+    }
+
+    /// Returns arguments to copy the vertices of bodies that deform; `None` without such.
+    pub fn spread_args(&self, positions: Positions<f64>, is_at_rest: bool) -> Option<MeshSpreadArgs> {
+        self.spread.as_ref().map(|moves| MeshSpreadArgs {
+            positions,
+            moves: moves.span(),
+            vertices: self.vertices(is_at_rest),
+            placed: self.placed_in.span(),
+            frame: self.frame.span(),
+        })
     }
 
     /// Returns arguments to place vertices of candidates.

@@ -59,8 +59,13 @@ pub struct Placing<R: Precision> {
     /// Vertices of rigid bodies without a pose, and each body's start there.
     rest: Buffer<Point<R>>,
     rest_starts: Vec<u32>,
-    /// Each body's first vertex, then the end of the last one.
+    /// Each body's first vertex here, then the end of the last one. A body that is not placed has no
+    /// vertex here.
     starts: Vec<u32>,
+    /// Each body's first vertex in the scene.
+    in_scene: Vec<u32>,
+    /// Whether each body is placed.
+    are_placed: Vec<bool>,
     /// For vertices with one end: ends of steps with both ends in the caller's memory, and which
     /// bodies have them.
     later: Buffer<Point<R>>,
@@ -83,31 +88,37 @@ pub struct Placing<R: Precision> {
 }
 
 impl<R: Precision> Placing<R> {
-    /// Allocates the vertices of bodies, moving or still, and places them.
+    /// Allocates the vertices of the bodies that are placed, moving or still, and places them.
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(device: &Device, layout: &Layout, bodies: &[Body], moving: bool) -> Result<Self, Error> {
-        let is_rigid = |body: &&Body| body.kind() == BodyKind::Rigid;
-        let rest: Vec<Point<R>> = bodies
-            .iter()
-            .filter(is_rigid)
-            .flat_map(|body| R::points(body.positions_t0()).map(Point::from))
+    pub fn new(
+        device: &Device,
+        layout: &Layout,
+        (bodies, are_placed): (&[Body], Vec<bool>),
+        moving: bool,
+    ) -> Result<Self, Error> {
+        let is_rigid = |i: usize| are_placed[i] && bodies[i].kind() == BodyKind::Rigid;
+        let rest: Vec<Point<R>> = (0..bodies.len())
+            .filter(|&i| is_rigid(i))
+            .flat_map(|i| R::points(bodies[i].positions_t0()).map(Point::from))
             .collect();
-        let mut at = 0;
-        let rest_starts = bodies.iter().map(|body| {
-            let start = at;
-            at += if is_rigid(&body) { body.vertex_count() as u32 } else { 0 };
-            start
-        });
-        let radii: Vec<R> = layout.radii.iter().map(|&radius| R::of(round::up(radius).into())).collect();
+        let rest_starts = starts(bodies, is_rigid);
+        let starts = starts(bodies, |i| are_placed[i]);
+        // Queries that read a thickness place all bodies.
+        let radii = if are_placed.contains(&false) { &[][..] } else { &layout.radii };
+        let radii: Vec<R> = radii.iter().map(|&radius| R::of(round::up(radius).into())).collect();
+        let fixed = |&i: &usize| are_placed[i] && bodies[i].kind() == BodyKind::Fixed;
+        let fixed = largest((0..bodies.len()).filter(fixed).map(|i| &bodies[i]));
         let of_radii = device.of(purpose::RADII).upload(&radii)?;
         let mut placing = Placing {
-            vertices: Vertices::new(device, moving, layout.starts[layout.bodies()].vertex as usize)?,
+            vertices: Vertices::new(device, moving, starts[bodies.len()] as usize)?,
             at_rest: device.buffer(0)?,
             is_at_rest_current: false,
-            rest_starts: rest_starts.collect(),
-            starts: layout.starts.iter().map(|at| at.vertex).collect(),
+            rest_starts,
+            starts,
+            in_scene: layout.starts.iter().map(|at| at.vertex).collect(),
+            are_placed,
             later: device.buffer(0)?,
             keeps: vec![false; bodies.len()],
             rest: device.of(purpose::REST).upload(&rest)?,
@@ -117,13 +128,13 @@ impl<R: Precision> Placing<R> {
             placed: Vec::new(),
             arrays: DeviceArrays::new(&device.of(purpose::DEVICE_ARRAYS))?,
             thick: (radii, of_radii),
-            fixed: largest(bodies.iter().filter(|body| body.kind() == BodyKind::Fixed)),
+            fixed,
             turns: Turns::new(device)?,
             last: Last::Host,
         };
-        placing.vertices.write(bodies.iter(), &placing.thick.0)?;
+        placing.write_all(bodies)?;
         let moved: Vec<Moved> = (0..bodies.len())
-            .filter(|&i| is_rigid(&&bodies[i]) || bodies[i].device_motion().is_some())
+            .filter(|&i| bodies[i].kind() == BodyKind::Rigid || bodies[i].device_motion().is_some())
             .map(|body| Moved { body, rests: false })
             .collect();
         placing.put(device, bodies, &moved)?;
@@ -146,6 +157,11 @@ impl<R: Precision> Placing<R> {
     /// Returns the vertices of rigid bodies, as they are without a pose.
     pub fn rest(&self) -> Span<Point<R>> {
         self.rest.span()
+    }
+
+    /// Returns each body's first vertex here, then the end of the last one.
+    pub fn starts(&self) -> &[u32] {
+        &self.starts
     }
 
     /// Returns the thickness of every vertex, rounded up; empty in a scene without.
@@ -216,6 +232,8 @@ impl<R: Precision> Placing<R> {
     /// # Errors
     /// Device errors.
     pub fn put(&mut self, device: &Device, bodies: &[Body], moved: &[Moved]) -> Result<(), Error> {
+        let moved: Vec<Moved> = moved.iter().copied().filter(|m| self.are_placed[m.body]).collect();
+        let moved = &moved[..];
         self.is_at_rest_current = false;
         if matches!(self.vertices, Vertices::Moving(_)) {
             return self.put_together(device, bodies, moved);
@@ -233,8 +251,14 @@ impl<R: Precision> Placing<R> {
         self.put_together(device, bodies, &one_end(false))
     }
 
+    /// Uploads the positions of all bodies that are placed.
+    fn write_all(&mut self, bodies: &[Body]) -> Result<(), Error> {
+        let placed = bodies.iter().zip(&self.are_placed).filter(|(_, is_placed)| **is_placed);
+        self.vertices.write(placed.map(|(body, _)| body), &self.thick.0)
+    }
+
     fn put_together(&mut self, device: &Device, bodies: &[Body], moved: &[Moved]) -> Result<(), Error> {
-        let all = moved.len() == bodies.len();
+        let all = moved.len() == self.are_placed.iter().filter(|&&is| is).count();
         self.turns.hold(device, Vec::new())?;
         (self.last, self.arrays.any) = (Last::Nothing, false);
         let comes = |m: &Moved| {
@@ -243,7 +267,7 @@ impl<R: Precision> Placing<R> {
         if all && moved.iter().all(comes) {
             self.keeps.fill(false);
             self.last = Last::Host;
-            return self.vertices.write(bodies.iter(), &self.thick.0);
+            return self.write_all(bodies);
         }
         let moving = matches!(self.vertices, Vertices::Moving(_));
         let ends = if moving { 2 } else { 1 };
@@ -265,9 +289,11 @@ impl<R: Precision> Placing<R> {
                 (false, Some(input), kind) => {
                     let first = arrays.len() as u32;
                     arrays.extend(input.records(if keeps { 2 } else { ends }));
-                    let from = if kind == BodyKind::Rigid { LENT_POSES } else { LENT };
+                    let is_rigid = kind == BodyKind::Rigid;
+                    let from = if is_rigid { LENT_POSES } else { LENT };
                     let from = if keeps { from | KEEPS_END } else { from };
-                    let placement = Placement { from, lent: first, pose: 2 * i as u32, ..placement };
+                    let source = if is_rigid { placement.source } else { self.in_scene[i] };
+                    let placement = Placement { from, source, lent: first, pose: 2 * i as u32, ..placement };
                     if moving && kind == BodyKind::Rigid && input.is_moving() {
                         turning.extend(turns::source(body, &placement, self.fixed));
                     }
@@ -330,6 +356,16 @@ impl<R: Precision> Placing<R> {
         launch::striding::<R::Place>(&device.undisturbed(), before as usize, &args)?;
         turns::launch(device, &of_turns)
     }
+}
+
+/// Returns each body's first vertex among those of some bodies, and their number.
+fn starts(bodies: &[Body], is_one: impl Fn(usize) -> bool) -> Vec<u32> {
+    let count = |i: usize| if is_one(i) { bodies[i].vertex_count() as u32 } else { 0 };
+    let ends = (0..bodies.len()).scan(0, |at, i| {
+        *at += count(i);
+        Some(*at)
+    });
+    std::iter::once(0).chain(ends).collect()
 }
 
 /// Returns the largest coordinate of vertices of bodies.

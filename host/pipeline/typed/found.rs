@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::pipeline::counts::Counts;
 use crate::pipeline::list::List;
 use crate::pipeline::order::{Order, Ordered};
-use crate::pipeline::placing::Seen;
+use crate::pipeline::placing::{DeviceArrays, Seen};
 use crate::pipeline::precision::Precision;
 #[cfg(doc)]
 use nearmiss_kernels::abi::Named;
@@ -124,7 +124,7 @@ impl<R: Precision> QueryMemory<R> {
     /// contacts as the last frame had.
     pub(super) fn read_ahead(&self, scene: &SceneMemory<R>) -> Result<(), Error> {
         let mut all = vec![self.counters.ahead()];
-        all.extend(scene.arrays().ahead());
+        all.extend(scene.arrays().filter_map(DeviceArrays::ahead));
         all.extend(self.narrow.ahead(&self.last));
         scene.device.read_ahead(&all)
     }
@@ -136,9 +136,9 @@ impl<R: Precision> QueryMemory<R> {
         reruns: u64,
     ) -> Result<Found<'a>, Error> {
         let listed = self.narrow.gather(&counters)?;
-        let (front_dropped, seen) = (scene.broads[self.broad].phase.front_dropped(), scene.arrays().seen()?);
+        let (front_dropped, seen) = (scene.broads[self.broad].phase.front_dropped(), scene.seen()?);
         let is_start_checked = self.narrow.checks_start();
-        let pairs = scene.candidates(self.is_of_instances).demand(&counters);
+        let pairs = scene.candidates(self).demand(&counters);
         Ok(Found { listed, counters, pairs, reruns, front_dropped, is_start_checked, seen })
     }
 }

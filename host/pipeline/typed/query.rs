@@ -41,6 +41,8 @@ pub struct QueryMemory<R: Precision> {
     pub broad: usize,
     /// Whether it reads bodies as instances.
     pub is_of_instances: bool,
+    /// Whether it reads others, which deform, as vertices.
+    pub is_mixed: bool,
     pub counters: FrameCounters,
     pub narrow: Box<dyn Narrow<R>>,
     pub reruns: u64,
@@ -73,7 +75,12 @@ impl<R: Precision> QueryMemory<R> {
         let shape = query.shape();
         let triangles = share.of(layout.moving_triangles() as u32).len();
         let a_triangle = if query.kind().is_at_rest() { PAIRS_A_TRIANGLE } else { SWEPT_PAIRS_A_TRIANGLE };
-        let (capacity, few) = if *is_of_instances {
+        let is_mixed = *is_of_instances && !scene.deforming.is_empty() && !query.kind().is_of_bodies();
+        let deforming = scene.deforming.iter().map(|&body| layout.triangles(body).1 as usize);
+        let (capacity, few) = if is_mixed {
+            let (triangles, bodies) = (deforming.sum::<usize>(), PAIRS_A_BODY * layout.bodies());
+            (LEAST_ROOM.max(a_triangle * triangles + bodies), LEAST_ROOM.max(4 * triangles + bodies))
+        } else if *is_of_instances {
             let room = LEAST_ROOM.max(PAIRS_A_BODY * layout.bodies());
             (room, room)
         } else {
@@ -95,6 +102,7 @@ impl<R: Precision> QueryMemory<R> {
             has_groups: layout.has_groups(),
             broad,
             is_of_instances: *is_of_instances,
+            is_mixed,
             counters: FrameCounters::new(&device)?,
             narrow,
             reruns: 0,
@@ -131,6 +139,11 @@ impl<R: Precision> QueryMemory<R> {
     /// Returns whether it reads only t = 0.
     pub fn is_at_rest(&self) -> bool {
         self.query.kind().is_at_rest()
+    }
+
+    /// Returns whether its candidates may be of bodies that are left out. Instances never list such.
+    pub fn leaves_out(&self) -> bool {
+        !self.is_of_instances || self.is_mixed
     }
 
     /// Returns the filters of the bodies, without nodes and pairs that are left out.
@@ -265,7 +278,7 @@ impl<R: Precision> QueryMemory<R> {
             frames,
             rest,
             faces,
-            pairs: scene.candidates(self.is_of_instances).output(counters),
+            pairs: scene.candidates(self).output(counters),
             bodies: self.records.span(),
             counters,
             features: &scene.features,

@@ -61,7 +61,7 @@ impl<R: Precision> QueryMemory<R> {
                     };
                     Ok(at.iter().map(wide).collect())
                 };
-                let pairs = scene.candidates(self.is_of_instances).demand(counters);
+                let pairs = scene.candidates(self).demand(counters);
                 self.demand.foreseen(pairs, (&self.layout, &scene.device), positions)
             }
             Step::Narrow(_, false) => self.demand.counted(counters, &scene.device),

@@ -5,16 +5,15 @@ use super::Broad;
 use super::query::QueryMemory;
 use crate::device::{Buffer, Device, Event};
 use crate::error::Error;
-use crate::mesh;
 use crate::pipeline::broad::{
-    BroadContext, CandidateSearch, Candidates, Which, broad_phase, growth, instance_phase, motion_phase,
-    pair_phase,
+    BroadContext, CandidateSearch, Candidates, Which, broad_phase, growth, instance_phase, mixed_phase,
+    motion_phase, pair_phase,
 };
 use crate::pipeline::instances::Instances;
 use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::narrow::{Exclusions, Features};
-use crate::pipeline::placing::{DeviceArrays, Moved, Placing, Whereabouts};
+use crate::pipeline::placing::{Moved, Placing};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::purpose;
 use crate::pipeline::{Layout, QueryParts, SceneParts};
@@ -25,7 +24,6 @@ use nearmiss_kernels::abi::{
     counter,
 };
 use nearmiss_kernels::entry::traverse_left_out;
-use nearmiss_kernels::math::Vec3;
 use std::sync::Arc;
 
 /// The choices that two queries must have in common to share a broad phase.
@@ -39,27 +37,32 @@ pub enum BroadKey {
     Instances,
     /// The same around a step, or at rest: a query of features.
     Motion { is_at_rest: bool },
+    /// The same next to tiles of bodies that deform, as in [`BroadKey::Tiles`].
+    Mixed { is_at_rest: bool, volume: BoundingVolume, adjacent: Option<bool> },
     /// The same with words of their relations: a query of pairs of bodies.
     Bodies(QueryKind),
 }
 
 impl BroadKey {
     /// Returns the key of a query of that shape.
-    fn of(shape: &Query, parts: &QueryParts, is_gpu: bool) -> BroadKey {
+    fn of(shape: &Query, parts: &QueryParts, (is_gpu, is_mixed): (bool, bool)) -> BroadKey {
         let layout = &parts.layout;
+        let has_hubs = !(layout.hubs.is_empty() && layout.rims.is_empty());
+        let adjacent = has_hubs.then(|| shape.keeps_adjacent());
         if shape.kind().is_of_bodies() {
             return BroadKey::Bodies(shape.kind());
         }
         if parts.is_of_instances {
             let is_at_rest = shape.kind().is_at_rest();
+            if is_mixed {
+                return BroadKey::Mixed { is_at_rest, volume: shape.volume(), adjacent };
+            }
             let is_of_features = shape.kind().is_of_features();
             return if is_of_features { BroadKey::Motion { is_at_rest } } else { BroadKey::Instances };
         }
         if shape.broad_phase_on(is_gpu) == query::BroadPhase::Tree {
             return BroadKey::Trees(*shape);
         }
-        let has_hubs = !(layout.hubs.is_empty() && layout.rims.is_empty());
-        let adjacent = has_hubs.then(|| shape.keeps_adjacent());
         BroadKey::Tiles(shape.volume(), adjacent)
     }
 }
@@ -70,10 +73,14 @@ pub struct SceneMemory<R: Precision> {
     /// Faces and vertices of all bodies; empty if all queries read bodies as instances.
     pub faces: Buffer<[u32; 3]>,
     pub vertices: Placing<R>,
-    has_vertices: bool,
+    pub has_vertices: bool,
+    /// Bodies that deform, if queries may read the others as instances; empty without such.
+    pub deforming: Vec<usize>,
+    /// Whether only these are placed.
+    pub places_deforming: bool,
     /// Whether queries may read bodies as instances whose poses only the device has.
     has_instances: bool,
-    layout: Arc<Layout>,
+    pub layout: Arc<Layout>,
     /// Pairs of bodies that are left out, as kernels read them; empty without such.
     left_out: Buffer<u32>,
     /// Pairs of features that are excluded.
@@ -103,11 +110,23 @@ impl<R: Precision> SceneMemory<R> {
     /// Device errors.
     pub fn new(device: Device, bodies: &[Body], parts: &SceneParts) -> Result<Self, Error> {
         let (empty, of_faces) = (Layout::without_bodies(), device.of(purpose::FACES));
-        let (layout, placed) = if parts.has_vertices { (&*parts.layout, bodies) } else { (&empty, &[][..]) };
+        let deforms = |body: &Body| body.kind() == BodyKind::Deformable;
+        let deforming: Vec<usize> = (0..bodies.len())
+            .filter(|&i| parts.has_instances && deforms(&bodies[i]) && bodies[i].element_count() > 0)
+            .collect();
+        let places_deforming = !parts.has_vertices && !deforming.is_empty();
+        let has_vertices = parts.has_vertices || places_deforming;
+        let (layout, placed) = if has_vertices { (&*parts.layout, bodies) } else { (&empty, &[][..]) };
+        let are_placed = placed.iter().map(|body| !places_deforming || deforms(body)).collect();
+        // Queries of instances have vertices of candidates, and faces, of their own.
+        let faces = if places_deforming { &empty.faces } else { &layout.faces };
+        let purpose = if places_deforming { purpose::DEFORMING } else { purpose::VERTICES };
         let mut scene = SceneMemory {
-            faces: of_faces.upload(&layout.faces)?,
-            vertices: Placing::new(&device.of(purpose::VERTICES), layout, placed, parts.has_ends)?,
-            has_vertices: parts.has_vertices,
+            faces: of_faces.upload(faces)?,
+            vertices: Placing::new(&device.of(purpose), layout, (placed, are_placed), parts.has_ends)?,
+            has_vertices,
+            deforming,
+            places_deforming,
             has_instances: parts.has_instances,
             layout: parts.layout.clone(),
             left_out: device.of(purpose::LEFT_OUT).upload(&parts.layout.left_out)?,
@@ -148,8 +167,8 @@ impl<R: Precision> SceneMemory<R> {
     }
 
     /// Returns the candidates that the narrow phase reads.
-    pub fn candidates(&self, is_of_instances: bool) -> &List<Pair> {
-        self.allowed.as_ref().filter(|_| !is_of_instances).unwrap_or(&self.pairs)
+    pub fn candidates(&self, query: &QueryMemory<R>) -> &List<Pair> {
+        self.allowed.as_ref().filter(|_| query.leaves_out()).unwrap_or(&self.pairs)
     }
 
     /// Lists a query's candidates.
@@ -165,7 +184,7 @@ impl<R: Precision> SceneMemory<R> {
         let flags = TraverseFlags::KEEP_ADJACENT.when(query.query.keeps_adjacent());
         let candidates = Candidates { pairs, counters, flags, which, share: query.share };
         self.broadly(query, |broad, given, _| broad.traverse(given, &candidates))?;
-        let Some(allowed) = self.allowed.as_ref().filter(|_| !query.is_of_instances) else {
+        let Some(allowed) = self.allowed.as_ref().filter(|_| query.leaves_out()) else {
             return Ok(());
         };
         let args = LeftOutArgs {
@@ -184,7 +203,8 @@ impl<R: Precision> SceneMemory<R> {
     /// Device errors.
     pub fn broad_of(&mut self, shape: &Query, parts: &QueryParts) -> Result<usize, Error> {
         let QueryParts { query, layout, .. } = parts;
-        let key = BroadKey::of(shape, parts, self.device.is_gpu());
+        let is_gpu = self.device.is_gpu();
+        let key = BroadKey::of(shape, parts, (is_gpu, !self.deforming.is_empty()));
         if let Some(at) = self.broads.iter().position(|broad| broad.key == key) {
             return Ok(at);
         }
@@ -192,6 +212,10 @@ impl<R: Precision> SceneMemory<R> {
         let phase = match key {
             BroadKey::Instances => instance_phase(&self.device, layout)?,
             BroadKey::Motion { is_at_rest } => motion_phase(&self.device, layout, is_at_rest, margin)?,
+            BroadKey::Mixed { .. } => {
+                let growth = Growth { margin, is_thick: 0 };
+                mixed_phase(&self.device, layout, (query, &self.deforming), growth)?
+            }
             BroadKey::Bodies(_) => pair_phase(&self.device, layout, query, margin)?,
             BroadKey::Tiles(..) | BroadKey::Trees(_) => {
                 let is_thick = layout.is_thick() && query.kind().is_of_features();
@@ -238,7 +262,7 @@ impl<R: Precision> SceneMemory<R> {
         } else {
             Vec::new()
         };
-        Instances::new(&self.device, bodies, &self.layout, &found)
+        Instances::new(&self.device, (bodies, self.vertices.starts()), &self.layout, &found)
     }
 
     /// Readies meshes and poses for a query of instances.
@@ -258,14 +282,15 @@ impl<R: Precision> SceneMemory<R> {
         if instances.differ(bodies) {
             instances.put(&self.device, bodies)?;
         }
-        if kind.is_of_features() {
+        let is_mixed = !self.deforming.is_empty() && !kind.is_of_bodies();
+        if kind.is_of_features() || is_mixed {
             instances.ready_motion(&self.device, (bodies, layout), kind.is_at_rest())?;
         } else {
             instances.ready_boxes(&self.device)?;
         }
         let deform = instances.deform();
         // Meshes that deform are refitted to vertices in the scene.
-        if deform { self.ready(true) } else { Ok(()) }
+        if deform { self.ready(kind.is_at_rest()) } else { Ok(()) }
     }
 
     /// Readies positions for a query at one time, or in motion.
@@ -275,7 +300,8 @@ impl<R: Precision> SceneMemory<R> {
     pub fn ready(&mut self, at_rest: bool) -> Result<(), Error> {
         if self.has_vertices && !self.vertices.is_ready(at_rest) {
             let start = self.device.event()?;
-            self.vertices.ready(&self.device.of(purpose::STARTS))?;
+            let purpose = if self.places_deforming { purpose::DEFORMING } else { purpose::STARTS };
+            self.vertices.ready(&self.device.of(purpose))?;
             self.placing.push([start, self.device.event()?]);
         }
         Ok(())
@@ -293,43 +319,6 @@ impl<R: Precision> SceneMemory<R> {
             }
             None => (self.vertices.frames(is_at_rest), self.vertices.rest(), self.faces.span()),
         }
-    }
-
-    /// Returns all positions at an end of the step, as a query reads them.
-    ///
-    /// # Errors
-    /// Device errors.
-    pub fn all_positions(&self, query: &QueryMemory<R>, end: usize) -> Result<Vec<Vec3<R>>, Error> {
-        match self.instances.as_ref().filter(|_| query.is_of_instances) {
-            Some(own) => {
-                let all = own.positions(&query.layout, end)?;
-                Ok(all.into_iter().map(|point| point.map(|x| R::of(x))).collect())
-            }
-            None => Ok(self.vertices.positions(query.is_at_rest())?.swap_remove(end)),
-        }
-    }
-
-    /// Returns the positions of all bodies.
-    ///
-    /// # Errors
-    /// Device errors.
-    pub fn whereabouts(&self) -> Result<Whereabouts, Error> {
-        let Some(own) = self.only_instances() else { return self.vertices.whereabouts() };
-        let positions = |end: usize| own.positions(&self.layout, end);
-        let end = |end: usize| Ok::<_, Error>(positions(end)?.into_iter().map(|p| p.0).collect());
-        let ends = vec![mesh::Positions::F64(end(0)?), mesh::Positions::F64(end(1)?)];
-        let (poses, seen) = (own.arrays().poses()?, own.arrays().seen()?);
-        Ok(Whereabouts { looked_at: ends.len(), ends, poses, seen })
-    }
-
-    /// Returns the instances, if no vertices are placed.
-    fn only_instances(&self) -> Option<&Instances> {
-        self.instances.as_ref().filter(|_| !self.has_vertices)
-    }
-
-    /// Returns what was read from the caller's memory, and its checks.
-    pub fn arrays(&self) -> &DeviceArrays {
-        self.only_instances().map_or_else(|| self.vertices.arrays(), Instances::arrays)
     }
 
     /// Returns whether the last frame placed nothing, or only from device memory, so that a submission

@@ -11,6 +11,7 @@ use crate::error::Error;
 use crate::pipeline::counts::{Counts, FrameCounters};
 use crate::pipeline::extras::{Extras, Inputs, missing};
 use crate::pipeline::layout::Offsets;
+use crate::pipeline::placing::DeviceArrays;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::Found;
 use crate::pipeline::{launch, purpose};
@@ -88,7 +89,8 @@ pub fn not_prepared() -> Error {
 
 impl<R: Precision> Submits for TypedPipeline<R> {
     fn poses(&self) -> Result<Vec<Pose>, Error> {
-        self.scene.arrays().poses()
+        // Those of instances are the last.
+        self.scene.arrays().last().map_or(Ok(Vec::new()), DeviceArrays::poses)
     }
 
     fn prepare(&mut self, queries: &[usize], wanted: &DeviceExtras) -> Result<bool, Error> {
@@ -233,8 +235,8 @@ impl<R: Precision> TypedPipeline<R> {
     fn enqueue(&mut self) -> Result<(), Error> {
         let Some(submission) = &mut self.submission else { return Ok(()) };
         let scene = &mut self.scene;
-        let seen = scene.arrays().seen.span();
-        let seen = if seen.is_empty() { submission.unseen.span() } else { seen };
+        let [seen, posed] = scene.seen_words();
+        let seen = [if seen.is_empty() { submission.unseen.span() } else { seen }, posed];
         scene.again()?;
         scene.is_submitting = true;
         let queries = &mut self.queries;
@@ -266,7 +268,7 @@ impl<R: Precision> QueryMemory<R> {
         &mut self,
         scene: &mut SceneMemory<R>,
         submitted: &mut Submitted,
-        seen: Span<u64>,
+        [seen, posed]: [Span<u64>; 2],
     ) -> Result<(), Error> {
         let growth = self.growth(scene);
         scene.broads[self.broad].phase.set_growth(growth);
@@ -288,6 +290,7 @@ impl<R: Precision> QueryMemory<R> {
             counters: all,
             rooms: submitted.rooms.span(),
             seen,
+            posed,
             status: submitted.status.span(),
             first: count(lists.counters.first()),
             second: count(lists.counters.get(1)),

@@ -1,7 +1,7 @@
 //! Queries of pairs of bodies: words of a relation, and arguments of kernels.
 
 use super::{
-    InstanceTables, InstancesArgs, NearestHit, NodePair, NodesArgs, Output, Pair, Point, Relation,
+    InstanceTables, InstancesArgs, NearestHit, NodePair, NodesArgs, Output, Pair, Point, Positions, Relation,
     RelationsArgs, Span, TouchingFlags,
 };
 use crate::math::Real;
@@ -80,6 +80,30 @@ arguments! {
         moves: Span<[u32; 2]>,
         /// Out: vertices of all meshes.
         vertices: Span<Point<f64>>,
+    }
+    /// `refit_meshes_spread`: vertices of bodies that deform, among those of candidates.
+    MeshSpreadArgs {
+        /// The positions of these bodies, at one end or at both.
+        positions: Positions<f64>,
+        /// A vertex there, and its number in the scene.
+        moves: Span<[u32; 2]>,
+        /// Out: vertices of the scene.
+        vertices: Positions<f64>,
+        /// Out: the frame in which each vertex of the scene was placed last.
+        placed: Span<u64>,
+        /// The number of the last frame.
+        frame: Span<u64>,
+    }
+    /// `refit_meshes_swept`: corners and boxes of triangles of bodies that deform.
+    MeshSweptArgs {
+        /// Meshes, in and out.
+        tables: InstanceTables,
+        /// A place of a triangle and its mesh.
+        places: Span<[u32; 2]>,
+        /// Vertex indices of every triangle of the scene.
+        faces: Span<[u32; 3]>,
+        /// Vertices of the scene, at one end or at both.
+        vertices: Positions<f64>,
     }
     /// `refit_meshes_corners`, `refit_meshes_nodes`, `refit_meshes_records`: the volumes of meshes.
     MeshRefitArgs {

@@ -18,8 +18,12 @@ pub struct MeshRecord {
     pub hi: [f64; 3],
     /// The node above all triangles.
     pub root: u32,
+    /// 1 if vertices of its one body are in the scene, and its volumes are refitted; else 0.
+    pub deforms: u32,
+    /// That body; 0 of other meshes.
+    pub body: u32,
     /// Zero.
-    pub pad: [u32; 3],
+    pub pad: u32,
 }
 const _: () = assert!(size_of::<MeshRecord>() == 96);
 
@@ -118,7 +122,7 @@ const _: () = assert!(size_of::<MeshTriangle>() == 48);
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C, align(16))]
 pub struct Relation {
-    /// The bodies, the smaller first.
+    /// The bodies, the smaller first; in a step or at rest, one that deforms is first.
     pub bodies: [u32; 2],
     /// Rows of the rotation from the frame of the second to that of the first.
     pub turn: [[f32; 3]; 3],
@@ -128,8 +132,10 @@ pub struct Relation {
     pub back: [f32; 3],
     /// Error of a vertex of one in the frame of the other, and of its volumes. Length.
     pub slack: f32,
+    /// 1 if the first body deforms in the step: its boxes hold a step, its corners do not.
+    pub sweeps: u32,
     /// Zero.
-    pub pad: [u32; 2],
+    pub pad: u32,
 }
 const _: () = assert!(size_of::<Relation>() == 80);
 

@@ -78,6 +78,10 @@ arguments! {
         counters: Counters,
         /// Everything this near counts as meeting: a length.
         within: f64,
+        /// 1 in a step, 0 at rest.
+        steps: u32,
+        /// Zero.
+        pad: u32,
     }
     /// `traverse_moving_nodes`: as `traverse_nodes`.
     MovingNodesArgs {

@@ -94,7 +94,8 @@ pub struct Placement {
     pub before: u32,
     /// Source of its vertices: [`UPLOADED`] or one of those behind it, with [`KEEPS_END`].
     pub from: u32,
-    /// Its first vertex there: among those that were uploaded, or among the points at rest.
+    /// Its first vertex there: among those that were uploaded, or among the points at rest. Of
+    /// vertices in the caller's memory, its first vertex in the scene.
     pub source: u32,
     /// Its first pose.
     pub pose: u32,

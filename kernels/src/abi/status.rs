@@ -46,6 +46,8 @@ arguments! {
         rooms: Span<Room>,
         /// Checks of the caller's numbers, see [`super::seen`].
         seen: Span<u64>,
+        /// The same of poses of instances next to bodies that deform; else empty.
+        posed: Span<u64>,
         /// Out: one.
         status: Span<FrameStatus>,
         /// Counts the answer's first list: one word, or none without a list.

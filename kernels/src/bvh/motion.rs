@@ -23,6 +23,11 @@
 //! If boxes of a node of `A` and of *both* boxes of a node of `B`, at the start and at the end, have
 //! a gap on one side of one axis of the frame, all chords stay on that side. So they are apart for
 //! the whole step, if the gap exceeds the slack: [`MovingRelation::of`]. The same is true of planes.
+//!
+//! A body that deforms is `A`, with a frame that stands still. Its boxes are around both ends of
+//! each vertex, which goes straight, so they hold it for the whole step and stand still as well. Its
+//! corners do not: planes part none of its triangles in a step ([`Relation::sweeps`]).
+//!
 //! Terms of the slack, beside that of [`super::relation`] at either end:
 //!
 //! - an eighth of the second derivative, for the frame of `A` or of `B`, the larger;
@@ -122,6 +127,10 @@ impl Related for MovingRelation {
     #[inline(always)]
     fn slack(&self) -> f32 {
         self.start.slack
+    }
+    #[inline(always)]
+    fn plane_slack(&self) -> f32 {
+        if self.start.sweeps == 0 { self.start.slack } else { f32::INFINITY }
     }
     #[inline(always)]
     fn first_in_both(&self, volume: &FrameBox) -> Both {

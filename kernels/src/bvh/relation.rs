@@ -62,10 +62,15 @@ pub trait Related: Pod {
     /// Those of a triangle of the first and of one of the second.
     type Row: Pod;
 
-    /// The bodies, the smaller first.
+    /// The bodies, as [`Relation::bodies`].
     fn bodies(&self) -> [u32; 2];
     /// Error of everything of one in the frame of the other. Length.
     fn slack(&self) -> f32;
+    /// The same for planes of triangles. If it is infinite, no plane parts two.
+    #[inline(always)]
+    fn plane_slack(&self) -> f32 {
+        self.slack()
+    }
     /// A volume of the first in both frames.
     fn first_in_both(&self, volume: &FrameBox) -> Both;
     /// A volume of the second in both frames.
@@ -162,7 +167,8 @@ impl Relation {
             shift: [shift[0] as f32, shift[1] as f32, shift[2] as f32],
             back: [back[0] as f32, back[1] as f32, back[2] as f32],
             slack: round::up(slack) + f32::MIN_POSITIVE,
-            pad: [0; 2],
+            sweeps: 0,
+            pad: 0,
         }
     }
 

@@ -154,7 +154,8 @@ pub fn place<R: Real, B: Block>(block: &mut B, args: &PlaceArgs<R>) {
                 LENT => {
                     let point = row::<_, 3>(lane, &lane.read(args.lent, placement.lent + end), own);
                     let point = Point::from(Vec3(point.map(|x| R::of(x))));
-                    seen.look(vertex, &point, true, args.most);
+                    // The number of the vertex in the scene.
+                    seen.look(source, &point, true, args.most);
                     point
                 }
                 POSED => {

@@ -46,11 +46,12 @@ fn record<B: Block>(block: &mut B, args: &StatusArgs, more: impl Fn(&B::Lane, u3
     block.phase(|lane| {
         if lane.lane() == 0 {
             let count = |at: Span<u64>| if at.is_empty() { 0 } else { lane.read(at, 0) };
+            let invalid = |of: Span<u64>| lane.read(of, seen::INVALID);
             let status = FrameStatus {
                 first: count(args.first),
                 second: count(args.second),
                 short: short.into(),
-                invalid: lane.read(args.seen, seen::INVALID),
+                invalid: invalid(args.seen).max(if args.posed.is_empty() { 0 } else { invalid(args.posed) }),
                 crossing: if args.crossing.is_empty() { u64::MAX } else { lane.read(args.crossing, 0) },
             };
             lane.write(args.status, 0, status);

@@ -5,13 +5,13 @@ use super::alike::{FAR, WORLDS, World, scene, scene_of};
 use super::*;
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::research::{BroadPhase, DetectorExt};
-use nearmiss::scene::PoseStep;
+use nearmiss::scene::{BodyKind, PoseStep};
 use nearmiss::{Continuous, Earliest};
 use support::ORDERS;
 
 /// Kinds of steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Ways {
+pub enum Ways {
     /// Vertices go straight.
     Straight,
     /// Bodies turn, by little.
@@ -21,13 +21,13 @@ enum Ways {
 }
 
 /// A step for each rigid body, through places like those of [`super::alike`].
-fn steps(
+pub fn steps(
     rng: &mut SmallRng,
     scene: &Scene,
     (size, place, range): World,
     ways: Ways,
 ) -> Vec<(BodyId, Motion<'static>)> {
-    let rigid = scene.ids().filter(|&id| scene.get(id).is_some_and(|body| body.name() != "fixed"));
+    let rigid = scene.ids().filter(|&id| scene.get(id).is_some_and(|body| body.kind() == BodyKind::Rigid));
     let mut any = |by: f64| [(); 3].map(|()| rng.random_range(-by..by));
     let step = |id| {
         let [at, by, turn, pivot] = [any(range * size), any(0.4 * size), any(0.3), any(size)];
@@ -51,7 +51,7 @@ fn steps(
 }
 
 /// Queries of a scene of that size.
-fn queries(size: f64) -> Vec<Query> {
+pub fn queries(size: f64) -> Vec<Query> {
     vec![
         Query::continuous(),
         Query::earliest(),
@@ -72,7 +72,7 @@ fn reads(detector: &mut Detector, query: &Query) -> bool {
 }
 
 /// Compares all that both report of a query at their current positions; the number of rows.
-fn same(both: &mut Both, query: Query) -> Result<usize, String> {
+pub fn same(both: &mut Both, query: Query) -> Result<usize, String> {
     let found = both.own.query(&query).map_err(|error| error.to_string())?;
     let by_tiles = query.with_broad_phase(BroadPhase::Tiles);
     let expected = both.judge.query(&by_tiles).map_err(|error| error.to_string())?;
@@ -88,7 +88,7 @@ fn same(both: &mut Both, query: Query) -> Result<usize, String> {
     Ok(found.len())
 }
 
-fn moved(both: &mut Both, motions: &[(BodyId, Motion)]) {
+pub fn moved(both: &mut Both, motions: &[(BodyId, Motion)]) {
     both.own.update(motions).expect("moved");
     both.judge.update(motions).expect("moved");
 }

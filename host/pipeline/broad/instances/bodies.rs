@@ -63,7 +63,7 @@ impl PairSearch {
     /// # Errors
     /// Device errors.
     pub fn new(device: &Device, layout: &Layout, query: &Query, margin: f32) -> Result<Self, Error> {
-        let mut bodies = BodyGroups::new(device, layout)?;
+        let mut bodies = BodyGroups::new(device, layout, descent::MEETING)?;
         bodies.groups.set_margin(margin);
         let (wanted, room) = (Wanted::of(query), bodies.relations.capacity());
         // One counter counts relations and their words, so all have the same room.

@@ -6,9 +6,12 @@
 mod bodies;
 mod descent;
 mod groups;
+mod mixed;
 mod motion;
 
 pub use bodies::PairSearch;
+pub use descent::MEETING;
+pub use mixed::MixedSearch;
 pub use motion::MotionSearch;
 
 use super::tiles::walk;
@@ -62,11 +65,12 @@ pub struct BodyGroups<Q: Pod = Relation> {
 }
 
 impl<Q: Pod> BodyGroups<Q> {
-    /// Allocates groups over the bodies of a layout. At least one body moves.
+    /// Allocates groups over the bodies of a layout, with these counters of nodes and tiles. At least
+    /// one body moves.
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(device: &Device, layout: &Layout) -> Result<Self, Error> {
+    pub fn new(device: &Device, layout: &Layout, counted: descent::Counted) -> Result<Self, Error> {
         let groups = Groups::new(device, layout)?;
         let bodies = layout.trees.iter().map(Vec::len).sum::<usize>();
         let room = |each: usize| LEAST_ROOM.max(each * bodies);
@@ -75,7 +79,7 @@ impl<Q: Pod> BodyGroups<Q> {
             group_pairs: List::new(device, "pairs of groups of bodies", counter::GROUP_PAIRS, own)?,
             body_pairs: List::new(device, "pairs of bodies", counter::BODY_PAIRS, room(PAIRS_A_BODY))?,
             relations: List::new(device, "related bodies", counter::RELATIONS, room(PAIRS_A_BODY))?,
-            descent: Descent::new(device, descent::MEETING, room(TILE_PAIRS_A_BODY))?,
+            descent: Descent::new(device, counted, room(TILE_PAIRS_A_BODY))?,
             tables: None,
             first: None,
             is_stale: false,
@@ -306,7 +310,7 @@ mod tests {
         };
         let bodies = (0..80).map(body).collect::<Result<Vec<_>, _>>()?;
         let layout = Layout::new(&bodies, Query::discrete().kind());
-        let instances = Instances::new(&device, &bodies, &layout, &[])?;
+        let instances = Instances::new(&device, (&bodies, &[]), &layout, &[])?;
         let given = BroadContext::<f64> {
             device: &device,
             frames: Positions { still: Span::EMPTY, moving: Span::EMPTY, turns: Span::EMPTY },
@@ -316,7 +320,7 @@ mod tests {
             is_submitted: false,
             instances: Some(&instances),
         };
-        let mut groups = BodyGroups::new(&device, &layout)?;
+        let mut groups = BodyGroups::new(&device, &layout, MEETING)?;
         groups.construct(&given, &layout)?;
         CandidateSearch::<f64>::fit(&mut groups, &given)?;
         CandidateSearch::<f64>::refit(&mut groups, &given)?;

@@ -1,6 +1,7 @@
 //! The search of queries of features: bodies as instances, in a step or at rest, down to triangles of
 //! the scene with their vertices.
 
+use super::descent::Counted;
 use super::{BodyGroups, striding, without_instances};
 use crate::device::Device;
 use crate::error::Error;
@@ -25,13 +26,18 @@ pub struct MotionSearch {
 }
 
 impl MotionSearch {
-    /// Allocates groups over the bodies of a layout, for a query at rest or in motion. At least one
-    /// body moves.
+    /// Allocates groups over the bodies of a layout, for a query at rest or in motion, with these
+    /// counters of nodes and tiles. At least one body moves.
     ///
     /// # Errors
     /// Device errors.
-    pub fn new(device: &Device, layout: &Layout, is_at_rest: bool, margin: f32) -> Result<Self, Error> {
-        let mut bodies = BodyGroups::new(device, layout)?;
+    pub fn new(
+        device: &Device,
+        layout: &Layout,
+        counted: Counted,
+        (is_at_rest, margin): (bool, f32),
+    ) -> Result<Self, Error> {
+        let mut bodies = BodyGroups::new(device, layout, counted)?;
         bodies.groups.read_poses(if is_at_rest { 1 } else { 2 });
         bodies.groups.set_margin(margin);
         Ok(MotionSearch { bodies, is_at_rest, margin })
@@ -39,7 +45,7 @@ impl MotionSearch {
 }
 
 /// The motions of a context's bodies.
-fn motion<'a, R: Precision>(given: &BroadContext<'a, R>) -> Result<&'a InMotion, Error> {
+pub fn motion<'a, R: Precision>(given: &BroadContext<'a, R>) -> Result<&'a InMotion, Error> {
     given.instances.and_then(|instances| instances.motion()).ok_or_else(without_instances)
 }
 
@@ -82,6 +88,8 @@ impl<R: Precision> CandidateSearch<R> for MotionSearch {
             left_out: given.filters.left_out,
             counters,
             within: 2.0 * f64::from(self.margin),
+            steps: (!self.is_at_rest).into(),
+            pad: 0,
         };
         launch::striding::<entry::traverse_moving_relations>(device, bodies.body_pairs.capacity(), &args)?;
         let room = bodies.relations.capacity();

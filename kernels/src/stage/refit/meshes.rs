@@ -12,8 +12,16 @@
 //!          deforms much are loose, and never too small.
 //! Room     fixed; cannot run out.
 //! Cost     24 B a vertex, 48 B, 32 B and 24 B a triangle out; 32 B a node below.
+//!
+//! [`spread`] and [`swept`] stand for the first two if triangles become candidates of features or of a
+//! query next to rigid bodies. `spread`, a lane a vertex, copies positions of the scene to their
+//! numbers among the vertices of candidates, and notes them as placed in the frame that comes: 32 B or
+//! 64 B in and out. `swept` reads these. In a step, boxes hold corners at both ends.
 
-use crate::abi::{MeshLeaf, MeshRefitArgs, MeshTriangle, MeshVerticesArgs, NONE, Point};
+use crate::abi::{
+    InstanceTables, MeshLeaf, MeshRecord, MeshRefitArgs, MeshSpreadArgs, MeshSweptArgs, MeshTriangle,
+    MeshVerticesArgs, NONE, Point,
+};
 use crate::bv::FrameBox;
 use crate::bvh::relation::corners_box;
 use crate::bvh::tiles::TILE;
@@ -62,14 +70,60 @@ pub fn corners<B: Block>(block: &mut B, args: &MeshRefitArgs) {
         let corners = [corner(vertices[0]), corner(vertices[1]), corner(vertices[2])];
         let number = lane.read(tables.leaves, place).number;
         lane.write(tables.triangles, place, MeshTriangle { corners, vertices });
-        let leaf = MeshLeaf { volume: corners_box(&corners), number, pad: 0 };
-        lane.write(tables.leaves, place, leaf);
-        let (columns, mut k) = (leaf.columns(), 0);
-        while k < MeshLeaf::COLUMNS {
-            let first = place / TILE * MeshLeaf::COLUMNS * TILE;
-            lane.write(tables.columns, first + k * TILE + place % TILE, columns[k as usize]);
-            k += 1;
+        put_box(lane, tables, place, MeshLeaf { volume: corners_box(&corners), number, pad: 0 });
+    });
+}
+
+/// Writes the box of a triangle, also by columns.
+#[inline(always)]
+fn put_box<L: Lane>(lane: &L, tables: &InstanceTables, place: u32, leaf: MeshLeaf) {
+    lane.write(tables.leaves, place, leaf);
+    let (columns, mut k) = (leaf.columns(), 0);
+    while k < MeshLeaf::COLUMNS {
+        let first = place / TILE * MeshLeaf::COLUMNS * TILE;
+        lane.write(tables.columns, first + k * TILE + place % TILE, columns[k as usize]);
+        k += 1;
+    }
+}
+
+/// Vertices of bodies that deform, among those of candidates.
+pub fn spread<B: Block>(block: &mut B, args: &MeshSpreadArgs) {
+    let is_still = args.vertices.moving.is_empty();
+    each(block, args.moves.len() as u32, |lane, i| {
+        let [from, to] = lane.read(args.moves, i);
+        if is_still {
+            lane.write(args.vertices.still, to, lane.read(args.positions.still, from));
+        } else {
+            lane.write(args.vertices.moving, to, lane.read(args.positions.moving, from));
         }
+        lane.write(args.placed, to, lane.read(args.frame, 0) + 1);
+    });
+}
+
+/// Corners at the start of the step, and boxes around both ends, of triangles of bodies that deform.
+pub fn swept<B: Block>(block: &mut B, args: &MeshSweptArgs) {
+    let (tables, is_still) = (&args.tables, args.vertices.moving.is_empty());
+    each(block, args.places.len() as u32, |lane, i| {
+        let [place, mesh] = lane.read(args.places, i);
+        let (MeshRecord { centre, body, .. }, number) =
+            (lane.read(tables.meshes, mesh), lane.read(tables.leaves, place).number);
+        let [x, y, z] = lane.read(args.faces, lane.read(tables.bodies, body).triangle + number);
+        let about = |at: Vec3<f64>| (at - Vec3(centre)).map(|x| x as f32).0;
+        let ends = |vertex: u32| {
+            if is_still {
+                let at = about(lane.read(args.vertices.still, vertex).at);
+                (at, at)
+            } else {
+                let motion = lane.read(args.vertices.moving, vertex);
+                (about(motion.t0.at), about(motion.t1.at))
+            }
+        };
+        let (p, q, r) = (ends(x), ends(y), ends(z));
+        let corners = [p.0, q.0, r.0];
+        let volume = corners_box(&corners).merge(corners_box(&[p.1, q.1, r.1]));
+        let vertices = lane.read(tables.triangles, place).vertices;
+        lane.write(tables.triangles, place, MeshTriangle { corners, vertices });
+        put_box(lane, tables, place, MeshLeaf { volume, number, pad: 0 });
     });
 }
 

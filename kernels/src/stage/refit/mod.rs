@@ -4,7 +4,7 @@
 //!
 //! | file | broad phase | launches | used |
 //! | --- | --- | --- | --- |
-//! | [`meshes`] | instances | vertices, triangles, one a level, bodies | queries of pairs of bodies |
+//! | [`meshes`] | instances | vertices, triangles, one a level, bodies | bodies that deform, as instances |
 //! | [`tiles`] | tiles: **the default** | one a level, from the third on | every machine |
 //! | [`treelets`] | trees | one, with barriers within blocks | default of trees on a GPU |
 //! | [`levels`] | trees, the paper's | one a level | default of trees on a CPU |

@@ -14,7 +14,8 @@
 //! instead ([`crate::bvh::gap`]). A pair that is left out has no two triangles within it.
 //!
 //! [`moving_relations`] keeps pairs whose root boxes meet in a step, at both ends and in between
-//! ([`crate::bvh::motion`]). A pair that is left out stays farther apart than `within`.
+//! ([`crate::bvh::motion`]). A pair that is left out stays farther apart than `within`, or both of
+//! its bodies deform: [`super::super::tiles`] has these. A body that deforms is the first of its pair.
 
 use crate::abi::{
     Counters, InstanceTables, MeshRecord, MovingRelation, MovingRelationsArgs, Output, Pair, Relation,
@@ -48,14 +49,19 @@ pub fn relations_within<B: Block>(block: &mut B, args: &RelationsWithinArgs) {
 pub fn moving_relations<B: Block>(block: &mut B, args: &MovingRelationsArgs) {
     let tables = &args.tables;
     list(block, (args.pairs, args.left_out), args.relations, args.counters, |lane, pair| {
-        let bodies = [pair.a, pair.b];
+        let [first, second] = [pair.a, pair.b].map(|body| mesh(lane, tables, body).deforms != 0);
+        if first & second {
+            return None;
+        }
+        let bodies = if second { [pair.b, pair.a] } else { [pair.a, pair.b] };
         let [of_a, of_b] = bodies.map(|body| mesh(lane, tables, body));
         let [a, b] = bodies.map(|body| lane.read(tables.frames, body));
         let [a_end, b_end] = bodies.map(|body| lane.read(args.ends, body));
         let [of_first, of_second] = bodies.map(|body| lane.read(args.motions, body));
         let frames = [[&a, &b], [&a_end, &b_end]];
         let motions = [&of_first, &of_second];
-        let relation = MovingRelation::of(bodies, frames, [&of_a, &of_b], motions, args.within);
+        let mut relation = MovingRelation::of(bodies, frames, [&of_a, &of_b], motions, args.within);
+        relation.start.sweeps = of_a.deforms & args.steps;
         overlaps(lane, tables, &relation, [of_a.root, of_b.root]).then_some(relation)
     });
 }

@@ -215,7 +215,7 @@ pub fn triangles<Q: Related, B: Block, T: Take<B>>(
                 lane.put(found, at, Candidate::word(if is_turned { [name, k] } else { [k, name] }));
             },
         );
-        let map = Planes::<Q> { slack: relation.slack(), of: PhantomData };
+        let map = Planes::<Q> { slack: relation.plane_slack(), of: PhantomData };
         let fits = sift(
             block,
             &map,
