@@ -13,33 +13,10 @@ import coal
 import fcl
 import nearmiss
 import numpy as np
+from balls import bumpy
 
-MESHES, SIDES = 10, (44, 22)
+MESHES = 10
 BOX, STEP, WITHIN = 16.0, 0.02, (0.02, 0.1)
-
-
-def bumpy(seed):
-    """A sphere with bumps: vertices and triangles."""
-    rng = np.random.default_rng(seed)
-    columns, rows = SIDES
-    u = np.arange(columns) * (2 * np.pi / columns)
-    v = np.arange(1, rows) * (np.pi / rows)
-    size = 0.5 * rng.uniform(0.8, 1.2)
-    depth, waves = rng.uniform(0.03, 0.12), rng.integers(2, 6, 2)
-    radius = size * (1 + depth * np.outer(np.sin(waves[0] * v), np.cos(waves[1] * u)))
-    ring = radius[..., None] * np.stack(
-        [np.outer(np.sin(v), np.cos(u)), np.outer(np.sin(v), np.sin(u)), np.outer(np.cos(v), np.ones(columns))], -1
-    )
-    points = np.concatenate([ring.reshape(-1, 3), [[0, 0, size], [0, 0, -size]]])
-    top, bottom = len(points) - 2, len(points) - 1
-    at = lambda row, column: row * columns + column % columns
-    faces = []
-    for column in range(columns):
-        faces += [[top, at(0, column), at(0, column + 1)], [bottom, at(rows - 2, column + 1), at(rows - 2, column)]]
-        for row in range(rows - 2):
-            a, b, c, d = at(row, column), at(row + 1, column), at(row + 1, column + 1), at(row, column + 1)
-            faces += [[a, b, c], [a, c, d]]
-    return points, np.array(faces, np.uint32)
 
 
 def poses(count, frames):

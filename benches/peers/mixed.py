@@ -14,35 +14,13 @@ import time
 
 import nearmiss
 import numpy as np
+from balls import bumpy
 
-MESHES, SIDES = 10, (43, 22)
+MESHES, SIDES, SIZES = 10, (43, 22), (0.85, 1.15)
 PITCH, STEP, NEAR = 1.1, 0.02, 0.02
 WARM = 3
 WAYS = ("rigid", "mixed", "placed")
 QUERIES = ("discrete", "near", "continuous", "earliest")
-
-
-def ball(seed):
-    """A sphere with bumps, of about 1,800 triangles: vertices and triangles."""
-    rng = np.random.default_rng(seed)
-    columns, rows = SIDES
-    u = np.arange(columns) * (2 * np.pi / columns)
-    v = np.arange(1, rows) * (np.pi / rows)
-    size = 0.5 * rng.uniform(0.85, 1.15)
-    depth, waves = rng.uniform(0.03, 0.12), rng.integers(2, 6, 2)
-    radius = size * (1 + depth * np.outer(np.sin(waves[0] * v), np.cos(waves[1] * u)))
-    directions = np.outer(np.sin(v), np.cos(u)), np.outer(np.sin(v), np.sin(u)), np.outer(np.cos(v), np.ones(columns))
-    ring = radius[..., None] * np.stack(directions, -1)
-    points = np.concatenate([ring.reshape(-1, 3), [[0, 0, size], [0, 0, -size]]])
-    top, bottom = len(points) - 2, len(points) - 1
-    at = lambda row, column: row * columns + column % columns
-    faces = []
-    for column in range(columns):
-        faces += [[top, at(0, column), at(0, column + 1)], [bottom, at(rows - 2, column + 1), at(rows - 2, column)]]
-        for row in range(rows - 2):
-            a, b, c, d = at(row, column), at(row + 1, column), at(row + 1, column + 1), at(row, column + 1)
-            faces += [[a, b, c], [a, c, d]]
-    return points, np.array(faces, np.uint32)
 
 
 def grid(count):
@@ -84,7 +62,7 @@ class Way:
     """A scene on a device of its own, in one of the three ways."""
 
     def __init__(self, way, args, places, extent):
-        meshes = [ball(seed) for seed in range(MESHES)]
+        meshes = [bumpy(seed, SIDES, SIZES) for seed in range(MESHES)]
         which = np.random.default_rng(0).integers(0, MESHES, args.bodies)
         bodies = [nearmiss.Body(*meshes[k], kind="rigid", name=f"ball {at}") for at, k in enumerate(which)]
         self.at = None
