@@ -46,7 +46,7 @@ fn turned(body: &Body) -> Body {
 
 /// A thickness of some vertices alone, of every fourth triangle.
 fn partial(n: usize, radius: f64) -> Vec<f64> {
-    let is_thin = |v: usize| v / 3 % 4 != 0 || v % 7 < 3;
+    let is_thin = |v: usize| !(v / 3).is_multiple_of(4) || v % 7 < 3;
     (0..3 * n).map(|v| if is_thin(v) { 0.0 } else { radius * (1 + v % 3) as f64 }).collect()
 }
 
