@@ -1,4 +1,4 @@
-//! Where vertices are: placed in the scene, or by the poses of instances.
+//! Positions of all vertices: placed in the scene, or by the poses of instances.
 
 use super::query::QueryMemory;
 use super::scene::SceneMemory;
