@@ -132,8 +132,9 @@ pub struct Relation {
     pub back: [f32; 3],
     /// Error of a vertex of one in the frame of the other, and of its volumes. Length.
     pub slack: f32,
-    /// 1 if the first body deforms in the step: its boxes hold a step, its corners do not.
-    pub sweeps: u32,
+    /// The same for planes of triangles, in a step. Infinite if the first body deforms: its boxes hold
+    /// a step, its corners do not, so no plane parts two.
+    pub plane_slack: f32,
     /// Zero.
     pub pad: u32,
 }

@@ -26,7 +26,7 @@
 //!
 //! A body that deforms is `A`, with a frame that stands still. Its boxes are around both ends of
 //! each vertex, which goes straight, so they hold it for the whole step and stand still as well. Its
-//! corners do not: planes part none of its triangles in a step ([`Relation::sweeps`]).
+//! corners do not: planes part none of its triangles in a step ([`Relation::plane_slack`]).
 //!
 //! Terms of the slack, beside that of [`super::relation`] at either end:
 //!
@@ -111,7 +111,7 @@ impl MovingRelation {
         // NaN, too.
         let is_known = slack < f32::MAX.wide();
         let slack = if is_known { round::up(slack) } else { f32::INFINITY };
-        (start.slack, end.slack) = (slack, slack);
+        (start.slack, end.slack, start.plane_slack) = (slack, slack, slack);
         MovingRelation { start, end }
     }
 }
@@ -130,7 +130,7 @@ impl Related for MovingRelation {
     }
     #[inline(always)]
     fn plane_slack(&self) -> f32 {
-        if self.start.sweeps == 0 { self.start.slack } else { f32::INFINITY }
+        self.start.plane_slack
     }
     #[inline(always)]
     fn first_in_both(&self, volume: &FrameBox) -> Both {

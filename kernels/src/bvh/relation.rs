@@ -167,7 +167,7 @@ impl Relation {
             shift: [shift[0] as f32, shift[1] as f32, shift[2] as f32],
             back: [back[0] as f32, back[1] as f32, back[2] as f32],
             slack: round::up(slack) + f32::MIN_POSITIVE,
-            sweeps: 0,
+            plane_slack: 0.0,
             pad: 0,
         }
     }

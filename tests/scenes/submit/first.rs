@@ -257,14 +257,17 @@ fn thick_bodies_have_their_first_contacts() {
     let soup = soups(90);
     let count = soup.frames[0][0].len();
     let every = |radius: &dyn Fn(usize) -> f64| (0..count).map(radius).collect::<Vec<_>>();
-    let (one, none) = (every(&|_| 1e-3), every(&|_| 0.0));
+    let one = every(&|_| 1e-3);
     let uneven = every(&|i| 1e-3 * (1 + i % 5) as f64);
     let some = every(&|i| 1e-3 * (i / 3 % 2) as f64);
-    for [first, others] in [[&one, &one], [&uneven, &one], [&one, &none], [&some, &none]] {
+    for (first, others) in [(&one, 1e-3), (&uneven, 1e-3), (&one, 0.0), (&some, 0.0)] {
         let mut scene = Scene::new();
         for body in soup.scene.bodies() {
-            let radii = if scene.bodies().is_empty() { first } else { others };
-            scene.add(body.clone().with_thickness(radii.clone()));
+            let is_first = scene.bodies().is_empty();
+            scene.add(match is_first {
+                true => body.clone().with_thickness(first.clone()),
+                false => body.clone().with_thickness(others),
+            });
         }
         let case = Case { scene, id: soup.id, frames: soup.frames.clone() };
         let approaching = certified(|own| (own.min_separation, own.approaching) = (0.01, true));

@@ -15,7 +15,7 @@
 //! | [`window`] | the part of a slice in which boxes meet |
 //! | [`certificate`] | a certain contact |
 //! | [`ahead`] | a look for a certain contact of features that are near |
-//! | [`solve`] | the walk through the step |
+//! | [`solve`] | the walk through the step, turn by turn; `next` has the slices behind the first |
 //! | [`apart`] | before all that: features of two triangles that planes keep apart |
 //!
 //! # Claims
@@ -52,6 +52,7 @@ pub mod ahead;
 pub mod apart;
 pub mod certificate;
 pub mod motion;
+mod next;
 pub mod place;
 pub mod rates;
 pub mod slice;

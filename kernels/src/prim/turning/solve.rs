@@ -11,22 +11,16 @@ use super::certificate::{Contact, Search, Turn};
 use super::motion::Motion;
 use super::place::Place;
 use super::slice::Bounds;
-use crate::math::tolerance::turning::{TURN_UP, TURNING_CURVE, TURNING_FINEST, TURNING_SHORTEST};
+use crate::math::tolerance::turning::{TURN_UP, TURNING_CURVE, TURNING_FINEST};
 use crate::math::{Real, Vec3};
 use crate::prim::inclusion::{Params, Verdict};
 
-/// Slices of a pair that is near before it is left undecided.
-const NEAR: u32 = 16;
-/// A slice in which the features move by less than this part of the tolerance is short.
-const SHORT: f64 = 0.25;
-/// The same, before a contact that is certain.
-const SHORTEST: f64 = 0.01;
 /// Chords are used if they are left by at most this part of the distance.
 const FLAT: f64 = 0.1;
 
 /// The place that a walk needs next.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Need {
+pub(super) enum Need {
     /// The start of the next slice.
     Start,
     /// Its end.
@@ -53,33 +47,33 @@ enum Look {
 /// The walk of a pair.
 #[derive(Clone, Copy, Debug)]
 pub struct Walk<const N: usize> {
-    need: Need,
+    pub(super) need: Need,
     /// The time of the place that it needs.
     wanted: f64,
     /// The end of the slice whose start is needed.
     then: f64,
     /// The slice; `to` is its middle while that is known and the slice is not clear.
-    from: Place<N>,
-    to: Place<N>,
-    bounds: Bounds,
+    pub(super) from: Place<N>,
+    pub(super) to: Place<N>,
+    pub(super) bounds: Bounds,
     /// The end of the slice.
-    end: f64,
+    pub(super) end: f64,
     /// The part in which boxes meet, if it is less than half of the slice; else the whole.
-    within: [f64; 2],
-    is_part: bool,
+    pub(super) within: [f64; 2],
+    pub(super) is_part: bool,
     /// Nothing behind is wanted: the end of the step, or the start of a certain contact.
-    limit: f64,
-    certain: Contact,
-    is_certain: bool,
-    slices: u32,
-    near: u32,
-    was_clear: bool,
+    pub(super) limit: f64,
+    pub(super) certain: Contact,
+    pub(super) is_certain: bool,
+    pub(super) slices: u32,
+    pub(super) near: u32,
+    pub(super) was_clear: bool,
     failed: f64,
     /// From `part` to `beyond` boxes do not meet.
-    part: f64,
-    beyond: f64,
-    tolerance: f64,
-    separation: f64,
+    pub(super) part: f64,
+    pub(super) beyond: f64,
+    pub(super) tolerance: f64,
+    pub(super) separation: f64,
     search: Search<N>,
 }
 
@@ -177,19 +171,19 @@ impl<const N: usize> Walk<N> {
 
     /// Wants the start of a slice, then its end.
     #[inline(always)]
-    fn from_and_to(&mut self, from: f64, to: f64) {
+    pub(super) fn from_and_to(&mut self, from: f64, to: f64) {
         (self.need, self.wanted, self.then) = (Need::Start, from, to);
     }
 
     /// Wants the end of the slice.
     #[inline(always)]
-    fn to(&mut self, to: f64) {
+    pub(super) fn to(&mut self, to: f64) {
         (self.need, self.wanted) = (Need::End, to);
     }
 
     /// The verdict at a time: the certain contact, or undecided.
     #[inline(always)]
-    fn verdict(&self, t: f64, p: &Params, gives_up: bool) -> Option<Verdict> {
+    pub(super) fn verdict(&self, t: f64, p: &Params, gives_up: bool) -> Option<Verdict> {
         Some(if self.is_certain {
             Verdict::contact(t, self.certain.to, self.slices, gives_up)
         } else {
@@ -287,7 +281,7 @@ impl<const N: usize> Walk<N> {
 
     /// The time in the middle of the slice, and whether it is one.
     #[inline(always)]
-    fn middle(&self) -> (f64, bool) {
+    pub(super) fn middle(&self) -> (f64, bool) {
         let t = self.from.t + 0.5 * (self.end - self.from.t);
         (t, t > self.from.t && t < self.end)
     }
@@ -304,107 +298,6 @@ impl<const N: usize> Walk<N> {
             (self.need, self.wanted) = (Need::Middle, t);
         }
         wants
-    }
-
-    /// Goes on behind a slice that is clear.
-    #[inline(always)]
-    fn clear(&mut self, p: &Params) -> Option<Verdict> {
-        let h = self.end - self.from.t;
-        let mut step = if self.was_clear { 2.0 * h } else { h };
-        let mut from = self.end;
-        let skips = from >= self.part && self.beyond > from;
-        if skips {
-            // The part that was cut off was about as long as the slice then.
-            step = step.max(self.beyond - from);
-            from = self.beyond;
-        }
-        if from >= self.limit {
-            let slices = self.slices;
-            return if self.is_certain {
-                self.verdict(self.certain.from, p, false)
-            } else {
-                Some(Verdict::separated(p.end, slices))
-            };
-        }
-        if from >= self.part {
-            (self.part, self.beyond) = (self.limit, self.limit);
-        }
-        self.was_clear = true;
-        let (t, most) = (from + step, self.part.min(self.limit));
-        let to = if t + 0.25 * step < most { t } else { most };
-        if skips {
-            self.from_and_to(from, to);
-        } else {
-            self.from = self.to;
-            self.to(to);
-        }
-        None
-    }
-
-    /// Goes on in a slice that is not clear, behind the search for a contact in it.
-    #[inline(always)]
-    fn open(&mut self, m: &Motion<N>, p: &Params, found: Option<Contact>) -> Option<Verdict> {
-        let moves = self.is_part && self.within[0] > self.from.t;
-        let start = if moves { self.within[0] } else { self.from.t };
-        let to;
-        if let Some(contact) = found {
-            (self.is_certain, self.certain) = (true, contact);
-            self.limit = contact.from;
-            if !(self.limit > start) {
-                return self.verdict(start, p, false);
-            }
-            to = self.limit;
-        } else if self.is_part {
-            self.beyond = if self.end >= self.part { self.beyond } else { self.end };
-            self.part = self.within[1];
-            to = self.part;
-        } else {
-            return self.halve(m, p);
-        }
-        if moves {
-            self.from_and_to(start, to);
-        } else {
-            self.to(to);
-        }
-        None
-    }
-
-    /// Goes on in the first half of the slice, unless it is short.
-    #[inline(always)]
-    fn halve(&mut self, m: &Motion<N>, p: &Params) -> Option<Verdict> {
-        let h = self.end - self.from.t;
-        let (t, is_between) = self.middle();
-        let is_shortest = !is_between || h <= TURNING_SHORTEST;
-        let way = h * self.bounds.speed;
-        let is_near =
-            way <= SHORT * self.tolerance && self.from.distance <= self.separation + 0.5 * self.tolerance;
-        if is_shortest || is_near {
-            // With a separation the slice ends in the contact.
-            let is_end = is_shortest || self.separation > 0.0 || way <= SHORTEST * self.tolerance;
-            if self.is_certain {
-                if is_end {
-                    return self.verdict(self.from.t, p, false);
-                }
-            } else {
-                self.near += 1;
-                if is_shortest || self.near > NEAR {
-                    let limits = [self.tolerance, self.separation];
-                    let found = m.contact_ahead(&self.from, h, p.end, limits);
-                    let from = self.from.t;
-                    return Some(match found {
-                        Some(contact) => Verdict::contact(from, contact.to, self.slices, false),
-                        None => Verdict::undecided(from, p.end, self.slices, !is_near),
-                    });
-                }
-            }
-        }
-        // The middle is known if it was needed.
-        if self.to.t == t {
-            self.need = Need::Nothing;
-        } else {
-            self.to(t);
-        }
-        None
     }
 }
 

@@ -61,7 +61,9 @@ pub fn moving_relations<B: Block>(block: &mut B, args: &MovingRelationsArgs) {
         let frames = [[&a, &b], [&a_end, &b_end]];
         let motions = [&of_first, &of_second];
         let mut relation = MovingRelation::of(bodies, frames, [&of_a, &of_b], motions, args.within);
-        relation.start.sweeps = of_a.deforms & args.steps;
+        if of_a.deforms & args.steps != 0 {
+            relation.start.plane_slack = f32::INFINITY;
+        }
         overlaps(lane, tables, &relation, [of_a.root, of_b.root]).then_some(relation)
     });
 }
