@@ -3,7 +3,6 @@
 use super::certificate::Contact;
 use super::motion::Motion;
 use super::solve::{Need, Walk};
-use crate::math::Real;
 use crate::math::tolerance::turning::TURNING_SHORTEST;
 use crate::prim::inclusion::{Params, Verdict};
 
