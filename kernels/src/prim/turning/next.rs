@@ -41,7 +41,7 @@ impl<const N: usize> Walk<N> {
         let (t, most) = (from + step, self.part.min(self.limit));
         let to = if t + 0.25 * step < most { t } else { most };
         if skips {
-            self.from_and_to(from, to);
+            self.wants_ends(from, to);
         } else {
             self.from = self.to;
             self.to(to);
@@ -70,7 +70,7 @@ impl<const N: usize> Walk<N> {
             return self.halve(m, p);
         }
         if moves {
-            self.from_and_to(start, to);
+            self.wants_ends(start, to);
         } else {
             self.to(to);
         }

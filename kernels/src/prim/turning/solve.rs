@@ -159,7 +159,7 @@ impl<const N: usize> Walk<N> {
         (self.is_certain, self.was_clear, self.failed) = (false, false, -1.0);
         (self.slices, self.near) = (0, 0);
         self.from.t = 0.0;
-        self.from_and_to(0.0, p.end);
+        self.wants_ends(0.0, p.end);
         None
     }
 
@@ -171,7 +171,7 @@ impl<const N: usize> Walk<N> {
 
     /// Wants the start of a slice, then its end.
     #[inline(always)]
-    pub(super) fn from_and_to(&mut self, from: f64, to: f64) {
+    pub(super) fn wants_ends(&mut self, from: f64, to: f64) {
         (self.need, self.wanted, self.then) = (Need::Start, from, to);
     }
 
