@@ -8,6 +8,7 @@ mod motion;
 mod oriented;
 mod poses;
 
+pub use deformed::deforms;
 pub use motion::InMotion;
 
 use super::layout::Layout;
@@ -17,7 +18,7 @@ use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::precision::Precision;
 use crate::scene::{Body, Pose};
-use deformed::{Deformed, deforms};
+use deformed::Deformed;
 use mesh::MeshTiles;
 use nearmiss_kernels::abi::{
     InstanceFrame, InstanceRecord, InstanceTables, MeshLeaf, MeshNode, MeshRecord, MeshTriangle, Point,

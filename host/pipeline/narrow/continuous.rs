@@ -7,8 +7,10 @@ mod made;
 mod steps;
 
 use super::answer::rows_of;
+use super::cull;
 use super::exclude::Kept;
 use super::features::Features;
+use super::left::named_lists;
 use super::rungs::Rungs;
 use super::start::StartCheck;
 use super::thin::{Thin, solver_in};
@@ -21,16 +23,17 @@ use crate::pipeline::below_precision::{self, BelowPrecision};
 use crate::pipeline::counts::{Counts, FrameCounters};
 use crate::pipeline::launch;
 use crate::pipeline::layout::Layout;
-use crate::pipeline::list::{GrowableOutput, List, Named, named};
+use crate::pipeline::list::{GrowableOutput, List, Named};
 use crate::pipeline::order::{Order, Ordering, Unordered};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
 use crate::query::{self, Certified, ContinuousSolver, Query};
 use crate::scene::Body;
 use first::SecondPass;
+use made::MAY_MEET;
 use nearmiss_kernels::abi::rows::code;
 use nearmiss_kernels::abi::{
-    BodyTolerance, Counter, Counters, CullArgs, Hit, Pair, SolveArgs, Span, counter, earliest,
+    BodyTolerance, Counter, Counters, Hit, Pair, SolveArgs, Span, counter, earliest,
 };
 use steps::Step;
 
@@ -129,21 +132,9 @@ impl ContinuousNarrow {
         if let Some(thin) = &self.thin {
             return thin.cull(given);
         }
-        let ([vf, ee], Some([may_vf, may_ee])) = (&given.features.candidates, &self.survivors) else {
-            return Ok(());
-        };
-        let args = CullArgs {
-            frames: given.frames,
-            faces: given.faces,
-            edges: given.features.edges.span(),
-            vf: vf.output(given.counters),
-            ee: ee.output(given.counters),
-            may_vf: may_vf.output(given.counters),
-            may_ee: may_ee.output(given.counters),
-            params: self.solver.certified().copied().unwrap_or_default().params(),
-            known: self.known(given.is_sample),
-        };
-        launch::striding::<R::Cull>(given.device, vf.capacity() + ee.capacity(), &args)
+        let Some(survivors) = &self.survivors else { return Ok(()) };
+        let lists = [&given.features.candidates, survivors];
+        cull::run(given, lists, self.solver.certified(), self.known(given.is_sample))
     }
 
     /// Launches the solver.
@@ -328,9 +319,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
         let mut lists: Vec<_> = self.start.iter().flat_map(StartCheck::uncertain).collect();
         lists.extend(features.between());
         lists.extend(self.turning.between());
-        if let Some([vf, ee]) = &self.survivors {
-            lists.extend([named("narrow: vf that may meet", vf), named("narrow: ee that may meet", ee)]);
-        }
+        lists.extend(self.survivors.iter().flat_map(|lists| named_lists(lists, MAY_MEET)));
         let names = ["narrow: vf that are not excluded", "narrow: ee that are not excluded"];
         lists.extend(self.kept.iter().flat_map(|kept| kept.between(names)));
         lists.extend(self.rungs.between());

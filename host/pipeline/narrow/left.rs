@@ -208,3 +208,11 @@ pub fn lists<T: Pod>(device: &Device, names: OfKinds, capacity: [usize; 2]) -> R
     let [(_, vf, vf_counter), (_, ee, ee_counter)] = names;
     Ok([List::new(device, vf, vf_counter, capacity[0])?, List::new(device, ee, ee_counter, capacity[1])?])
 }
+
+/// Returns lists of both kinds, with their names for comparisons.
+pub fn named_lists<T: Pod + Ord + Send>(
+    lists: &[List<T>; 2],
+    names: OfKinds,
+) -> impl Iterator<Item = Named<'_>> {
+    lists.iter().zip(names).map(|(list, (name, ..))| named(name, list))
+}

@@ -5,6 +5,7 @@ mod answer;
 mod bodies;
 mod capacities;
 mod continuous;
+mod cull;
 mod discrete;
 mod distance;
 mod exclude;

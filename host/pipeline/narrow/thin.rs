@@ -6,19 +6,20 @@
 //! same earliest time. A body with vertices of both sorts has triangle pairs that are thin and thick:
 //! there pairs of features are sifted by their own vertices.
 
+use super::cull;
 use super::exclude::Kept;
-use super::left::{THIN, lists};
+use super::left::{OfKinds, THIN, lists, named_lists};
 use super::rungs::Rungs;
 use super::{Capacities, NarrowContext, growable};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::layout::Layout;
-use crate::pipeline::list::{GrowableOutput, List, Named, named};
+use crate::pipeline::list::{GrowableOutput, List, Named};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::{launch, purpose};
 use crate::query::{Certified, ContinuousSolver};
 use nearmiss_kernels::abi::{
-    BodyTolerance, CullArgs, DivideThickArgs, Hit, Output, Pair, SiftThickArgs, Span, counter,
+    BodyTolerance, DivideThickArgs, Hit, Output, Pair, SiftThickArgs, Span, counter,
 };
 use nearmiss_kernels::entry::{narrow_divide_thick, narrow_sift_thick};
 
@@ -34,6 +35,32 @@ pub fn solver_in(solver: ContinuousSolver, is_thick: bool) -> ContinuousSolver {
 pub fn is_mixed(solver: ContinuousSolver, layout: &Layout) -> bool {
     layout.meets_thin && solver.certified().is_some_and(|certified| !certified.is_apart())
 }
+
+/// Triangle pairs: thin ones, then thick ones.
+const DIVIDED: OfKinds = [
+    ("narrow: thin triangle pairs", "triangle pairs without a thickness", counter::THIN_PAIRS),
+    ("narrow: thick triangle pairs", "triangle pairs with a thickness", counter::THICK_PAIRS),
+];
+/// Candidates of the thin ones.
+const CANDIDATES: OfKinds = [
+    ("narrow: thin vf", "thin vertex/face candidates", counter::VF_THIN),
+    ("narrow: thin ee", "thin edge/edge candidates", counter::EE_THIN),
+];
+/// Pairs of features without a thickness, of both sorts of triangles.
+const ALL_THIN: OfKinds = [
+    ("narrow: vf of thin vertices", "vertex/face pairs without a thickness", counter::VF_ALL_THIN),
+    ("narrow: ee of thin vertices", "edge/edge pairs without a thickness", counter::EE_ALL_THIN),
+];
+/// Pairs of features with one.
+const SOME_THICK: OfKinds = [
+    ("narrow: vf with thick vertices", "vertex/face pairs with a thickness", counter::VF_SOME_THICK),
+    ("narrow: ee with thick vertices", "edge/edge pairs with a thickness", counter::EE_SOME_THICK),
+];
+/// Thin pairs that the cull keeps.
+const SURVIVORS: OfKinds = [
+    ("narrow: thin vf that may meet", "thin vertex/face pairs that may meet", counter::VF_SURVIVORS),
+    ("narrow: thin ee that may meet", "thin edge/edge pairs that may meet", counter::EE_SURVIVORS),
+];
 
 /// The lists of those pairs, and their solver.
 pub struct Thin {
@@ -71,36 +98,19 @@ impl Thin {
         capacities: &Capacities,
     ) -> Result<Self, Error> {
         let few = capacities.survivors;
-        let list = |name, counter, room| List::new(device, name, counter, room);
         let sifted = || {
             Ok::<_, Error>(Sifted {
-                thin: [
-                    list("vertex/face pairs without a thickness", counter::VF_ALL_THIN, few[0])?,
-                    list("edge/edge pairs without a thickness", counter::EE_ALL_THIN, few[1])?,
-                ],
-                thick: [
-                    list("vertex/face pairs with a thickness", counter::VF_SOME_THICK, few[0])?,
-                    list("edge/edge pairs with a thickness", counter::EE_SOME_THICK, few[1])?,
-                ],
+                thin: lists(device, ALL_THIN, few)?,
+                thick: lists(device, SOME_THICK, few)?,
             })
         };
-        let may_meet = [
-            ("", "thin vertex/face pairs that may meet", counter::VF_SURVIVORS),
-            ("", "thin edge/edge pairs that may meet", counter::EE_SURVIVORS),
-        ];
         Ok(Thin {
             certified: *certified,
             radii: device.of(purpose::RADII).upload(&layout.radii)?,
-            pairs: [
-                list("triangle pairs without a thickness", counter::THIN_PAIRS, few[1])?,
-                list("triangle pairs with a thickness", counter::THICK_PAIRS, few[1])?,
-            ],
-            candidates: [
-                list("thin vertex/face candidates", counter::VF_THIN, few[0])?,
-                list("thin edge/edge candidates", counter::EE_THIN, few[1])?,
-            ],
+            pairs: lists(device, DIVIDED, [few[1]; 2])?,
+            candidates: lists(device, CANDIDATES, few)?,
             sifted: layout.is_ragged.then(sifted).transpose()?,
-            survivors: lists(device, may_meet, few)?,
+            survivors: lists(device, SURVIVORS, few)?,
             kept: None,
             rungs: Rungs::new(device, (Some(certified), &THIN), capacities)?,
         })
@@ -199,20 +209,8 @@ impl Thin {
     /// # Errors
     /// Device errors.
     pub fn cull<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
-        let [vf, ee] = self.sifted.as_ref().map_or(&self.candidates, |sifted| &sifted.thin);
-        let [may_vf, may_ee] = &self.survivors;
-        let args = CullArgs {
-            frames: given.frames,
-            faces: given.faces,
-            edges: given.features.edges.span(),
-            vf: vf.output(given.counters),
-            ee: ee.output(given.counters),
-            may_vf: may_vf.output(given.counters),
-            may_ee: may_ee.output(given.counters),
-            params: self.certified.params(),
-            known: Span::EMPTY,
-        };
-        launch::striding::<R::Cull>(given.device, vf.capacity() + ee.capacity(), &args)
+        let thin = self.sifted.as_ref().map_or(&self.candidates, |sifted| &sifted.thin);
+        cull::run(given, [thin, &self.survivors], Some(&self.certified), Span::EMPTY)
     }
 
     /// Launches the step that drops thin pairs that are excluded.
@@ -265,22 +263,11 @@ impl Thin {
 
     /// Returns the lists, with names: for comparing machines.
     pub fn between(&self) -> Vec<Named<'_>> {
-        let ([thin, thick], [vf, ee], [may_vf, may_ee]) = (&self.pairs, &self.candidates, &self.survivors);
-        let mut all = vec![
-            named("narrow: thin triangle pairs", thin),
-            named("narrow: thick triangle pairs", thick),
-            named("narrow: thin vf", vf),
-            named("narrow: thin ee", ee),
-            named("narrow: thin vf that may meet", may_vf),
-            named("narrow: thin ee that may meet", may_ee),
-        ];
-        if let Some(Sifted { thin: [thin_vf, thin_ee], thick: [thick_vf, thick_ee] }) = &self.sifted {
-            all.extend([
-                named("narrow: vf of thin vertices", thin_vf),
-                named("narrow: ee of thin vertices", thin_ee),
-                named("narrow: vf with thick vertices", thick_vf),
-                named("narrow: ee with thick vertices", thick_ee),
-            ]);
+        let mut all: Vec<_> = named_lists(&self.pairs, DIVIDED).collect();
+        all.extend(named_lists(&self.candidates, CANDIDATES));
+        all.extend(named_lists(&self.survivors, SURVIVORS));
+        if let Some(Sifted { thin, thick }) = &self.sifted {
+            all.extend(named_lists(thin, ALL_THIN).chain(named_lists(thick, SOME_THICK)));
         }
         let names = ["narrow: thin vf that are not excluded", "narrow: thin ee that are not excluded"];
         all.extend(self.kept.iter().flat_map(|kept| kept.between(names)));

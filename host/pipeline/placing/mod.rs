@@ -232,8 +232,13 @@ impl<R: Precision> Placing<R> {
     /// # Errors
     /// Device errors.
     pub fn put(&mut self, device: &Device, bodies: &[Body], moved: &[Moved]) -> Result<(), Error> {
-        let moved: Vec<Moved> = moved.iter().copied().filter(|m| self.are_placed[m.body]).collect();
-        let moved = &moved[..];
+        let own: Vec<Moved>;
+        let moved = if self.are_placed.contains(&false) {
+            own = moved.iter().copied().filter(|m| self.are_placed[m.body]).collect();
+            &own
+        } else {
+            moved
+        };
         self.is_at_rest_current = false;
         if matches!(self.vertices, Vertices::Moving(_)) {
             return self.put_together(device, bodies, moved);

@@ -75,7 +75,7 @@ impl<R: Precision> QueryMemory<R> {
         let shape = query.shape();
         let triangles = share.of(layout.moving_triangles() as u32).len();
         let a_triangle = if query.kind().is_at_rest() { PAIRS_A_TRIANGLE } else { SWEPT_PAIRS_A_TRIANGLE };
-        let is_mixed = *is_of_instances && !scene.deforming.is_empty() && !query.kind().is_of_bodies();
+        let is_mixed = *is_of_instances && scene.mixes(query.kind());
         let deforming = scene.deforming.iter().map(|&body| layout.triangles(body).1 as usize);
         let (capacity, few) = if is_mixed {
             let (triangles, bodies) = (deforming.sum::<usize>(), PAIRS_A_BODY * layout.bodies());

@@ -9,7 +9,7 @@ use crate::pipeline::broad::{
     BroadContext, CandidateSearch, Candidates, Which, broad_phase, growth, instance_phase, mixed_phase,
     motion_phase, pair_phase,
 };
-use crate::pipeline::instances::Instances;
+use crate::pipeline::instances::{Instances, deforms};
 use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::narrow::{Exclusions, Features};
@@ -110,14 +110,13 @@ impl<R: Precision> SceneMemory<R> {
     /// Device errors.
     pub fn new(device: Device, bodies: &[Body], parts: &SceneParts) -> Result<Self, Error> {
         let (empty, of_faces) = (Layout::without_bodies(), device.of(purpose::FACES));
-        let deforms = |body: &Body| body.kind() == BodyKind::Deformable;
-        let deforming: Vec<usize> = (0..bodies.len())
-            .filter(|&i| parts.has_instances && deforms(&bodies[i]) && bodies[i].element_count() > 0)
-            .collect();
+        let deforming: Vec<usize> =
+            (0..bodies.len()).filter(|&i| parts.has_instances && deforms(&bodies[i])).collect();
         let places_deforming = !parts.has_vertices && !deforming.is_empty();
         let has_vertices = parts.has_vertices || places_deforming;
         let (layout, placed) = if has_vertices { (&*parts.layout, bodies) } else { (&empty, &[][..]) };
-        let are_placed = placed.iter().map(|body| !places_deforming || deforms(body)).collect();
+        let are_placed =
+            placed.iter().map(|body| !places_deforming || body.kind() == BodyKind::Deformable).collect();
         // Queries of instances have vertices of candidates, and faces, of their own.
         let faces = if places_deforming { &empty.faces } else { &layout.faces };
         let purpose = if places_deforming { purpose::DEFORMING } else { purpose::VERTICES };
@@ -166,6 +165,11 @@ impl<R: Precision> SceneMemory<R> {
         lists
     }
 
+    /// Returns whether queries of instances of this kind read bodies that deform as vertices.
+    pub fn mixes(&self, kind: QueryKind) -> bool {
+        !self.deforming.is_empty() && !kind.is_of_bodies()
+    }
+
     /// Returns the candidates that the narrow phase reads.
     pub fn candidates(&self, query: &QueryMemory<R>) -> &List<Pair> {
         self.allowed.as_ref().filter(|_| query.leaves_out()).unwrap_or(&self.pairs)
@@ -204,7 +208,7 @@ impl<R: Precision> SceneMemory<R> {
     pub fn broad_of(&mut self, shape: &Query, parts: &QueryParts) -> Result<usize, Error> {
         let QueryParts { query, layout, .. } = parts;
         let is_gpu = self.device.is_gpu();
-        let key = BroadKey::of(shape, parts, (is_gpu, !self.deforming.is_empty()));
+        let key = BroadKey::of(shape, parts, (is_gpu, self.mixes(shape.kind())));
         if let Some(at) = self.broads.iter().position(|broad| broad.key == key) {
             return Ok(at);
         }
@@ -277,13 +281,13 @@ impl<R: Precision> SceneMemory<R> {
         if self.instances.is_none() {
             self.instances = Some(self.new_instances(bodies)?);
         }
+        let has_vertices = kind.is_of_features() || self.mixes(kind);
         let Some(instances) = &mut self.instances else { return Ok(()) };
         // The host may have poses of a download, which no update named.
         if instances.differ(bodies) {
             instances.put(&self.device, bodies)?;
         }
-        let is_mixed = !self.deforming.is_empty() && !kind.is_of_bodies();
-        if kind.is_of_features() || is_mixed {
+        if has_vertices {
             instances.ready_motion(&self.device, (bodies, layout), kind.is_at_rest())?;
         } else {
             instances.ready_boxes(&self.device)?;

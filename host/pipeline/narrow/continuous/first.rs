@@ -10,15 +10,37 @@ use crate::error::Error;
 use crate::pipeline::counts::FrameCounters;
 use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List};
+use crate::pipeline::narrow::left::{OfKinds, lists};
 use crate::pipeline::narrow::thin::Thin;
-use crate::pipeline::narrow::{NarrowContext, growable};
+use crate::pipeline::narrow::{NarrowContext, cull, growable};
 use crate::pipeline::precision::Precision;
 use crate::query::Certified;
-use nearmiss_kernels::abi::{CullArgs, FirstHitsArgs, FirstPairsArgs, Hit, Pair, Span, counter};
+use nearmiss_kernels::abi::{FirstHitsArgs, FirstPairsArgs, Hit, Pair, Span, counter};
 use nearmiss_kernels::entry::narrow_first_hits;
 
 /// Entries of each list for which there is room at first.
 const FEW: usize = 1024;
+
+/// Pairs at the earliest time.
+const PAIRS: OfKinds = [
+    ("", "vertex/face pairs at the earliest time", counter::VF_SURVIVORS),
+    ("", "edge/edge pairs at the earliest time", counter::EE_SURVIVORS),
+];
+/// The same without a thickness.
+const THIN: OfKinds = [
+    ("", "thin vertex/face pairs at the earliest time", counter::VF_THIN),
+    ("", "thin edge/edge pairs at the earliest time", counter::EE_THIN),
+];
+/// The same of bodies that turn.
+const TURNING: OfKinds = [
+    ("", "vertex/face pairs that turn, at the earliest time", counter::VF_TURNING),
+    ("", "edge/edge pairs that turn, at the earliest time", counter::EE_TURNING),
+];
+/// Their contacts.
+const HITS: OfKinds = [
+    ("", "vertex/face contacts by the earliest time", counter::VF_HITS),
+    ("", "edge/edge contacts by the earliest time", counter::EE_HITS),
+];
 
 /// Memory of the second pass; counters are its own, lists between rungs are those of the first pass.
 pub struct SecondPass {
@@ -35,29 +57,13 @@ pub struct SecondPass {
 
 impl SecondPass {
     fn new(device: &Device, is_mixed: bool) -> Result<SecondPass, Error> {
-        let pairs = |name, counter, room| List::<Pair>::new(device, name, counter, room);
-        let hits = |name, counter| List::<Hit>::new(device, name, counter, FEW);
-        let thin = || {
-            Ok::<_, Error>([
-                pairs("thin vertex/face pairs at the earliest time", counter::VF_THIN, FEW)?,
-                pairs("thin edge/edge pairs at the earliest time", counter::EE_THIN, FEW)?,
-            ])
-        };
+        let few = [FEW, FEW];
         Ok(SecondPass {
-            thin: is_mixed.then(thin).transpose()?,
             counters: FrameCounters::new(device)?,
-            pairs: [
-                pairs("vertex/face pairs at the earliest time", counter::VF_SURVIVORS, FEW)?,
-                pairs("edge/edge pairs at the earliest time", counter::EE_SURVIVORS, FEW)?,
-            ],
-            turning: [
-                pairs("vertex/face pairs that turn, at the earliest time", counter::VF_TURNING, 0)?,
-                pairs("edge/edge pairs that turn, at the earliest time", counter::EE_TURNING, 0)?,
-            ],
-            hits: [
-                hits("vertex/face contacts by the earliest time", counter::VF_HITS)?,
-                hits("edge/edge contacts by the earliest time", counter::EE_HITS)?,
-            ],
+            pairs: lists(device, PAIRS, few)?,
+            thin: is_mixed.then(|| lists(device, THIN, few)).transpose()?,
+            turning: lists(device, TURNING, [0, 0])?,
+            hits: lists(device, HITS, few)?,
         })
     }
 }
@@ -140,20 +146,12 @@ impl ContinuousNarrow {
         (cut, certified): (&Cut, Option<&Certified>),
         earliest: Span<u64>,
     ) -> Result<(), Error> {
-        let ([vf, ee], [may_vf, may_ee]) = (cut.tested, cut.may);
-        let tested = CullArgs {
-            frames: again.frames,
-            faces: again.faces,
-            edges: again.features.edges.span(),
-            vf: vf.output(first.counters),
-            ee: ee.output(first.counters),
-            may_vf: may_vf.output(again.counters),
-            may_ee: may_ee.output(again.counters),
-            params: certified.copied().unwrap_or_default().params(),
-            known: earliest,
-        };
+        let outputs = |lists: [&List<Pair>; 2], counters| lists.map(|list| list.output(counters));
+        let lists = [outputs(cut.tested, first.counters), outputs(cut.may, again.counters)];
+        let tested = cull::args(again, lists, certified, earliest);
+        let capacity = cut.tested.iter().map(|list| list.capacity()).sum();
         let args = FirstPairsArgs { tested, all: u32::from(!cut.cuts), pad: 0 };
-        launch::striding::<R::FirstPairs>(again.device, vf.capacity() + ee.capacity(), &args)
+        launch::striding::<R::FirstPairs>(again.device, capacity, &args)
     }
 }
 

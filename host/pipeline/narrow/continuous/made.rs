@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::list::List;
 use crate::pipeline::narrow::Capacities;
-use crate::pipeline::narrow::left::USUAL;
+use crate::pipeline::narrow::left::{OfKinds, USUAL, lists};
 use crate::pipeline::narrow::rungs::Rungs;
 use crate::pipeline::narrow::start::StartCheck;
 use crate::pipeline::narrow::thin::{Thin, is_mixed, solver_in};
@@ -14,7 +14,16 @@ use crate::pipeline::narrow::turning::Turning;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::purpose;
 use crate::query::{Certified, ContinuousSolver};
-use nearmiss_kernels::abi::{Counter, Hit, counter, earliest};
+use nearmiss_kernels::abi::{Hit, counter, earliest};
+
+/// Pairs that the cull keeps.
+pub(super) const MAY_MEET: OfKinds = [
+    ("narrow: vf that may meet", "vertex/face pairs that may meet", counter::VF_SURVIVORS),
+    ("narrow: ee that may meet", "edge/edge pairs that may meet", counter::EE_SURVIVORS),
+];
+/// The contacts; their order is compared, not their lists.
+const HITS: OfKinds =
+    [("", "vertex/face contacts", counter::VF_HITS), ("", "edge/edge contacts", counter::EE_HITS)];
 
 impl ContinuousNarrow {
     /// Allocates the phase for all contacts of a scene.
@@ -71,15 +80,7 @@ impl ContinuousNarrow {
     /// # Errors
     /// Device errors.
     pub fn new(device: &Device, solver: ContinuousSolver, capacities: Capacities) -> Result<Self, Error> {
-        let lists = |[vf, ee]: [&'static str; 2], [vf_at, ee_at]: [Counter; 2], capacity: [usize; 2]| {
-            Ok::<_, Error>([
-                List::new(device, vf, vf_at, capacity[0])?,
-                List::new(device, ee, ee_at, capacity[1])?,
-            ])
-        };
-        let may_meet = ["vertex/face pairs that may meet", "edge/edge pairs that may meet"];
-        let survivors =
-            || lists(may_meet, [counter::VF_SURVIVORS, counter::EE_SURVIVORS], capacities.survivors);
+        let survivors = || lists(device, MAY_MEET, capacities.survivors);
         let is_apart = solver.certified().is_some_and(Certified::is_apart);
         let [vf_hits, ee_hits] = ContinuousNarrow::hits(device, capacities.hits)?;
         Ok(ContinuousNarrow {
@@ -115,10 +116,7 @@ impl ContinuousNarrow {
     /// # Errors
     /// Device errors.
     pub(super) fn hits(device: &Device, room: [usize; 2]) -> Result<[List<Hit>; 2], Error> {
-        Ok([
-            List::new(device, "vertex/face contacts", counter::VF_HITS, room[0])?,
-            List::new(device, "edge/edge contacts", counter::EE_HITS, room[1])?,
-        ])
+        lists(device, HITS, room)
     }
 
     /// Adds the check of the start: it counts crossing pairs, with room for `few` pairs that

@@ -4,8 +4,8 @@
 //! the part in which boxes meet, or halved; after two that are clear the next is twice as long.
 //! There is no stack.
 //!
-//! A walk takes turns, and each needs one place at most. So lanes that step together compute places
-//! together, whatever they need them for, and the code has one copy of each part.
+//! A walk takes turns, and each needs one place at most. So lanes that step together compute their
+//! places together, for all purposes, and the code has one copy of each part.
 
 use super::certificate::{Contact, Search, Turn};
 use super::motion::Motion;
@@ -33,7 +33,7 @@ pub(super) enum Need {
     Search,
 }
 
-/// What is known of a slice.
+/// The verdict on a slice.
 #[derive(Clone, Copy, PartialEq)]
 enum Look {
     /// Nothing yet.
@@ -192,7 +192,7 @@ impl<const N: usize> Walk<N> {
     }
 
     /// Takes a turn: computes the place that it needs, and does what it is for. In line: out of line
-    /// a GPU's local memory moves 1.5 times as much (`benches/NOTES.md`).
+    /// a GPU takes 1.4 times as long (`benches/NOTES.md`).
     #[inline(always)]
     pub fn turn(&mut self, m: &Motion<N>, p: &Params) -> Option<Verdict> {
         let place = if self.need == Need::Nothing { self.to } else { m.at(self.wanted) };
