@@ -5,6 +5,7 @@ mod block;
 mod coherent;
 mod columns;
 mod compiled;
+mod crew;
 mod engine;
 mod interrupt;
 mod kept;
@@ -24,15 +25,16 @@ pub use sanitizer::{Fault, Place, Sanitizer};
 pub use threads::start_threads;
 
 use block::Emulated;
+use crew::Crew;
 use engine::Looking;
 use nearmiss_kernels::entry::Entry;
 use observer::BlockObserver;
-use rayon::prelude::*;
 use std::ptr::NonNull;
+use std::sync::Arc;
 use turns::TurnScheduler;
 
 /// Failures and findings of an emulator.
-#[derive(Debug, thiserror::Error)]
+#[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// The threads cannot be started.
@@ -83,7 +85,7 @@ const FEW_LANES: u32 = 64;
 
 /// A CPU that runs the kernels.
 pub struct Emulator {
-    pool: Option<rayon::ThreadPool>,
+    crew: Arc<Crew>,
     sanitizer: Option<Sanitizer>,
     lanes: Option<u32>,
 }
@@ -95,12 +97,12 @@ impl Emulator {
     /// [`Error::Threads`] if the threads cannot be started; [`Error::Forked`] in a process that was
     /// forked after some were.
     pub fn new(mode: Mode, threads: Option<usize>) -> Result<Self, Error> {
-        let pool = threads::pool(threads)?;
+        let crew = threads::crew(threads)?;
         let sanitizer = match mode {
             Mode::Engine => None,
             Mode::Sanitizer(order) => Some(Sanitizer::new(order, None)),
         };
-        Ok(Emulator { pool, sanitizer, lanes: None })
+        Ok(Emulator { crew, sanitizer, lanes: None })
     }
 
     /// The same emulator with blocks of another size, except for kernels with an exact one. Answers
@@ -121,11 +123,7 @@ impl Emulator {
 
     /// Number of threads that run blocks.
     pub fn threads(&self) -> usize {
-        match (&self.sanitizer, &self.pool) {
-            (Some(_), _) => 1,
-            (None, Some(pool)) => pool.current_num_threads(),
-            (None, None) => rayon::current_num_threads(),
-        }
+        if self.sanitizer.is_some() { 1 } else { self.crew.threads() }
     }
 
     /// Lanes of a block of a kernel. Those of an engine have few if they may, so that the values of
@@ -158,13 +156,10 @@ impl Emulator {
         Ok(memory)
     }
 
-    /// Does work on a thread that runs blocks, if this is an engine: launches from there need not
-    /// wake one and wait.
-    pub fn inside<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
-        match (&self.sanitizer, &self.pool) {
-            (Some(_), _) => work(),
-            (None, Some(pool)) => pool.install(work),
-            (None, None) => rayon::scope(|_| work()),
+    /// Says that launches follow soon, so that a thread is awake for the first one.
+    pub fn wake(&self) {
+        if self.sanitizer.is_none() {
+            self.crew.wake();
         }
     }
 
@@ -229,15 +224,7 @@ impl Emulator {
                     E::run(&mut Emulated::new(block, blocks, lanes, Looking(&looks)), args);
                 }
             };
-            let run = || {
-                // One block is not worth waking a thread.
-                if blocks == 1 { block(0) } else { (0..blocks).into_par_iter().for_each(block) }
-            };
-            let all = || match &self.pool {
-                Some(pool) => pool.install(run),
-                None => run(),
-            };
-            turns::to_its_end(all).unwrap_or_else(turns::pass_on);
+            turns::to_its_end(|| self.crew.run(blocks, &block)).unwrap_or_else(turns::pass_on);
         }
         if looks.ended() { Err(Error::Interrupted) } else { Ok(()) }
     }

@@ -1,10 +1,11 @@
-//! The threads of engines: one pool that the program shares, or one of an engine's own. On WebAssembly
-//! there are none: the calling thread does all the work.
+//! The threads of engines: one crew that the program shares, or one of an engine's own; and one pool for
+//! the host's own work. On WebAssembly there are none: the calling thread does all the work.
 
 use crate::Error;
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use crate::crew::Crew;
+use rayon::ThreadPoolBuilder;
 use std::error::Error as _;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// Checks that this is the process that first started threads. A process that was forked since has
 /// none of them, and would wait for ever.
@@ -41,20 +42,28 @@ pub fn start_threads() -> Result<(), Error> {
         Err(error) if error.source().is_some() => Err(error.to_string()),
         _ => Ok(()),
     });
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    started.clone().map_err(|text| Error::Threads { threads, text })
+    started.clone().map_err(|text| {
+        // Only for the text: the system reads files for it.
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        Error::Threads { threads, text }
+    })
 }
 
-/// A pool of so many threads; none for the shared threads.
+/// A crew of so many threads; without a number the one that the program shares.
 ///
 /// # Errors
 /// [`Error::Threads`] if they cannot be started; [`Error::Forked`] in a process that was forked since
 /// some were.
-pub fn pool(threads: Option<usize>) -> Result<Option<ThreadPool>, Error> {
+pub fn crew(threads: Option<usize>) -> Result<Arc<Crew>, Error> {
+    static SHARED: OnceLock<Result<Arc<Crew>, Error>> = OnceLock::new();
+    let start = |threads| {
+        let crew = Crew::new(threads).map(Arc::new);
+        crew.map_err(|e| Error::Threads { threads, text: e.to_string() })
+    };
     let Some(threads) = threads.filter(|_| !cfg!(target_family = "wasm")) else {
-        return start_threads().map(|()| None);
+        start_threads()?;
+        return SHARED.get_or_init(|| start(rayon::current_num_threads())).clone();
     };
     has_threads()?;
-    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-    pool.map(Some).map_err(|e| Error::Threads { threads, text: e.to_string() })
+    start(threads)
 }

@@ -11,6 +11,9 @@ const CHUNK: usize = 1 << 18;
 /// Most entries that one thread merges at a time.
 const PIECE: usize = 1 << 14;
 
+/// So few entries are mapped by one thread: others would take as long to wake.
+const FEW: usize = 1 << 10;
+
 /// Appends the mapped entries; fewer if an interrupt ends the work.
 pub fn extend<T: Sync, U: Send>(to: &mut Vec<U>, from: &[T], map: impl Fn(&T) -> U + Sync, looks: &Looks) {
     to.reserve_exact(from.len());
@@ -18,7 +21,11 @@ pub fn extend<T: Sync, U: Send>(to: &mut Vec<U>, from: &[T], map: impl Fn(&T) ->
         if looks.ends() {
             return;
         }
-        to.par_extend(chunk.par_iter().map(&map));
+        if chunk.len() > FEW {
+            to.par_extend(chunk.par_iter().map(&map));
+        } else {
+            to.extend(chunk.iter().map(&map));
+        }
     }
 }
 

@@ -211,13 +211,12 @@ impl Replay {
 }
 
 impl Device {
-    /// Does work that launches. On a CPU a thread that runs blocks does it: others need not wake it
-    /// for each launch.
-    pub(crate) fn inside<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+    /// Says that launches follow soon.
+    pub(crate) fn wake(&self) {
         match &*self.machine {
-            Machine::Emulator(e) => e.inside(work),
+            Machine::Emulator(e) => e.wake(),
             #[cfg(feature = "cuda")]
-            Machine::Cuda(_) => work(),
+            Machine::Cuda(_) => {}
         }
     }
 

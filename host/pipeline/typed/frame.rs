@@ -74,14 +74,13 @@ impl<R: Precision> QueryMemory<R> {
         let start = Instant::now();
         let is_listed = self.settled && scene.broads[self.broad].phase.without_host().is_ok();
         let frame = |marks: &mut Marks| self.stages(scene, fits, marks);
-        let done = device.inside(|| {
-            if is_listed {
-                // SAFETY: settled stages launch and clear; they keep the memory that they hold.
-                unsafe { replay.run(&device, frame) }
-            } else {
-                replay.straight(&device, frame)
-            }
-        });
+        device.wake();
+        let done = if is_listed {
+            // SAFETY: settled stages launch and clear; they keep the memory that they hold.
+            unsafe { replay.run(&device, frame) }
+        } else {
+            replay.straight(&device, frame)
+        };
         self.replay = replay;
         self.launch_ms += start.elapsed().as_secs_f64() * 1e3;
         done
