@@ -37,6 +37,7 @@ mod submissions;
 mod thickness;
 mod turns;
 mod watch;
+mod worker;
 
 /// The compiled half of `nearmiss`.
 #[pyo3::pymodule]

@@ -2,6 +2,7 @@
 //! thread, and the main thread waits for it.
 
 use crate::errors::raised;
+use crate::worker;
 use nearmiss::{Error, Interrupt};
 use pyo3::prelude::*;
 use std::any::Any;
@@ -55,7 +56,7 @@ impl Watch {
     }
 
     /// Whether the work is over, waiting for that a little.
-    fn is_over(&self) -> bool {
+    pub fn is_over(&self) -> bool {
         let over = self.over.lock().unwrap_or_else(PoisonError::into_inner);
         let waited = self.ends.wait_timeout_while(over, PERIOD, |over| !*over);
         *waited.unwrap_or_else(PoisonError::into_inner).0
@@ -63,9 +64,9 @@ impl Watch {
 }
 
 /// Says that work is over, also after a panic.
-struct Over<'a>(&'a Watch);
+pub struct Over(pub Arc<Watch>);
 
-impl Drop for Over<'_> {
+impl Drop for Over {
     fn drop(&mut self) {
         *self.0.over.lock().unwrap_or_else(PoisonError::into_inner) = true;
         self.0.ends.notify_all();
@@ -89,22 +90,12 @@ pub fn watched<T: Send>(
     interrupt: &Interrupt,
     work: impl FnOnce(&Watch) -> T + Send,
 ) -> PyResult<T> {
-    let watch = Watch::default();
+    let watch = Arc::new(Watch::default());
     if !is_main(py)? {
         return caught(py, || work(&watch));
     }
-    let work = Mutex::new(Some(work));
-    let run = || {
-        let _over = Over(&watch);
-        let work = work.lock().unwrap_or_else(PoisonError::into_inner).take();
-        work.map(|work| work(&watch))
-    };
     let mut signal = None;
-    let done = thread::scope(|scope| {
-        let Ok(worker) = thread::Builder::new().name("nearmiss".into()).spawn_scoped(scope, run) else {
-            // No thread is to be had: then no signal ends the work.
-            return caught(py, run);
-        };
+    let wait = || {
         while !py.detach(|| watch.is_over()) {
             if signal.is_none()
                 && let Err(error) = py.check_signals()
@@ -116,15 +107,16 @@ pub fn watched<T: Send>(
                 interrupt.trigger();
             }
         }
-        ended(py, || worker.join())
-    });
+    };
+    let done = worker::run(&watch, || work(&watch), wait);
+    let done = done.map(|done| ended(py, || done)).transpose();
     match (signal, done) {
         (Some(error), _) => {
             interrupt.clear();
             Err(error)
         }
         (None, Ok(Some(done))) => Ok(done),
-        // It is taken once.
+        // A task is called or dropped, and nothing drops it.
         (None, Ok(None)) => Err(raised(Error::Bug { what: "work that was not done".into() })),
         (None, Err(error)) => Err(error),
     }
@@ -174,9 +166,9 @@ pub fn left_behind<T: Send + 'static>(
     work: impl Fn() -> T + Send + Sync + 'static,
 ) -> PyResult<T> {
     let (watch, work) = (Arc::new(Watch::default()), Arc::new(work));
-    let (own, its) = (watch.clone(), work.clone());
+    let (over, its) = (Over(watch.clone()), work.clone());
     let run = move || {
-        let _over = Over(&own);
+        let _over = over;
         its()
     };
     match thread::Builder::new().name("nearmiss".into()).spawn(run) {
