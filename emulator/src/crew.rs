@@ -22,8 +22,8 @@ const PIECES: u64 = 64;
 pub struct Crew {
     shared: Arc<Shared>,
     threads: usize,
-    /// The process that has the helpers: one that was forked has none.
-    process: u32,
+    /// The process that has the helpers, if there are any: one that was forked has none.
+    process: Option<u32>,
 }
 
 struct Shared {
@@ -70,7 +70,9 @@ impl Crew {
     pub fn new(threads: usize) -> std::io::Result<Crew> {
         let state = Mutex::new(State::default());
         let shared = Arc::new(Shared { state, bell: Condvar::new(), posts: AtomicU64::new(0) });
-        let crew = Crew { shared, threads: threads.max(1), process: std::process::id() };
+        // WebAssembly has no processes, and no helpers.
+        let process = (threads > 1).then(std::process::id);
+        let crew = Crew { shared, threads: threads.max(1), process };
         for _ in 1..threads {
             let shared = crew.shared.clone();
             // If one cannot be started, the others end with the crew.
@@ -125,7 +127,7 @@ impl Crew {
 
 impl Drop for Crew {
     fn drop(&mut self) {
-        if self.threads > 1 && self.process == std::process::id() {
+        if self.process.is_some_and(|process| process == std::process::id()) {
             self.shared.lock().ends = true;
             self.shared.posts.fetch_add(1, Relaxed);
             self.shared.bell.notify_all();
