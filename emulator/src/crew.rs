@@ -4,6 +4,7 @@
 //! busy machine wakes late costs nothing. Helpers wait actively for a moment after each launch,
 //! since most launches follow another, then they sleep.
 
+use crate::place;
 use crate::turns::to_its_end;
 use std::any::Any;
 use std::panic::resume_unwind;
@@ -31,6 +32,8 @@ struct Shared {
     bell: Condvar,
     /// Number of changes of the state that a helper waits for; changed with the lock.
     posts: AtomicU64,
+    /// The core of the last launcher that woke a helper.
+    core: AtomicUsize,
 }
 
 #[derive(Default)]
@@ -69,7 +72,8 @@ impl Crew {
     /// The system's, if a thread cannot be started.
     pub fn new(threads: usize) -> std::io::Result<Crew> {
         let state = Mutex::new(State::default());
-        let shared = Arc::new(Shared { state, bell: Condvar::new(), posts: AtomicU64::new(0) });
+        let (bell, posts, core) = (Condvar::new(), AtomicU64::new(0), AtomicUsize::new(place::UNKNOWN));
+        let shared = Arc::new(Shared { state, bell, posts, core });
         // WebAssembly has no processes, and no helpers.
         let process = (threads > 1).then(std::process::id);
         let crew = Crew { shared, threads: threads.max(1), process };
@@ -147,6 +151,9 @@ impl Shared {
         change(&mut state);
         self.posts.fetch_add(1, Relaxed);
         let sleeps = state.asleep > 0;
+        if sleeps {
+            self.core.store(place::core(), Relaxed);
+        }
         drop(state);
         if sleeps {
             self.bell.notify_one();
@@ -189,6 +196,9 @@ impl Shared {
                 state.asleep += 1;
                 state = self.bell.wait(state).unwrap_or_else(PoisonError::into_inner);
                 state.asleep -= 1;
+                drop(state);
+                place::leave(self.core.load(Relaxed));
+                state = self.lock();
             }
         }
     }

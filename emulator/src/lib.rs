@@ -12,6 +12,7 @@ mod kept;
 mod lane;
 mod observer;
 mod order;
+mod place;
 mod prefetch;
 mod rows;
 mod sanitizer;
