@@ -224,6 +224,7 @@ kernels! {
     narrow_divide_thick: divide_thick::divide, [DivideThickArgs], WIDE, 0;
     narrow_sift_thick: divide_thick::sift, [SiftThickArgs], WIDE, 0;
     narrow_turning_features: turning::features, [TurningFeaturesArgs], turning::LANES, turning::SHARED;
+    narrow_turning_common: turning::common, [TurningArgs], SPREAD, 0;
     narrow_turning: turning::solve, [TurningArgs], SPREAD, 0;
     narrow_near_f32: near::near::<f32, B>, [NearArgs<f32>], RUNG, 0, registers = 64;
     narrow_near_f64: near::near::<f64, B>, [NearArgs<f64>], RUNG, 0;

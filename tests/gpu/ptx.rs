@@ -308,6 +308,7 @@ fn kernels_do_not_copy_their_arguments() {
         "narrow_slice_f32",
         "narrow_slice_f64",
         "narrow_turning",
+        "narrow_turning_common",
     ];
     assert_eq!(copying(&committed()), known);
 }

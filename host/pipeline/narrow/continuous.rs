@@ -306,6 +306,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
             Step::Solve => growable([&mut self.vf_hits, &mut self.ee_hits])
                 .chain(growable(&mut self.counters))
                 .chain(self.rungs.lists())
+                .chain(self.turning.left())
                 .chain(self.thin.iter_mut().flat_map(Thin::left))
                 .collect(),
         }

@@ -1,6 +1,7 @@
 //! Pairs of bodies that turn: their lists, and the launches around those of straight motion.
 
 use super::exclude::Kept;
+use super::left::{OfKinds, lists, named_lists};
 use super::{NarrowContext, growable};
 use crate::device::Device;
 use crate::error::Error;
@@ -12,10 +13,24 @@ use nearmiss_kernels::abi::{
     BodyTolerance, DivideArgs, Hit, Listed, Output, Pair, RungArgs, RungFlags, Span, TurningArgs,
     TurningFeaturesArgs, counter,
 };
-use nearmiss_kernels::entry::{narrow_divide, narrow_turning, narrow_turning_features};
+use nearmiss_kernels::entry::{
+    narrow_divide, narrow_turning, narrow_turning_common, narrow_turning_features,
+};
+use nearmiss_kernels::prim::inclusion::Params;
 
 /// Candidates of each kind for which there is room at first.
 const FEW: usize = 4096;
+
+/// Pairs that one slice leaves.
+const LEFT: OfKinds = [
+    ("narrow: vf turning, left", "vertex/face pairs that turn, left by one slice", counter::VF_TURNING_LEFT),
+    ("narrow: ee turning, left", "edge/edge pairs that turn, left by one slice", counter::EE_TURNING_LEFT),
+];
+/// Pairs that are no common case.
+const WALKS: OfKinds = [
+    ("narrow: vf walks", "vertex/face pairs that turn and take the walk", counter::VF_TURNING_WALKS),
+    ("narrow: ee walks", "edge/edge pairs that turn and take the walk", counter::EE_TURNING_WALKS),
+];
 
 /// The lists; without room until a step has a body that may turn.
 pub struct Turning {
@@ -27,6 +42,10 @@ pub struct Turning {
     candidates: [List<Pair>; 2],
     /// Those of them that are not excluded, in a scene that excludes some.
     kept: Option<Kept>,
+    /// Those that one slice leaves.
+    left: [List<Pair>; 2],
+    /// Those of them that take the walk.
+    walks: [List<Pair>; 2],
 }
 
 impl Turning {
@@ -44,6 +63,8 @@ impl Turning {
                 list("edge/edge pairs that turn", counter::EE_TURNING)?,
             ],
             kept: None,
+            left: lists(device, LEFT, [0, 0])?,
+            walks: lists(device, WALKS, [0, 0])?,
         })
     }
 
@@ -85,7 +106,8 @@ impl Turning {
         let pairs = given.pairs.room() as usize;
         self.straight.reserve(given.device, pairs)?;
         self.turning.reserve(given.device, pairs)?;
-        self.candidates.iter_mut().try_for_each(|list| list.reserve(given.device, FEW))
+        let mut few = self.candidates.iter_mut().chain(&mut self.left).chain(&mut self.walks);
+        few.try_for_each(|list| list.reserve(given.device, FEW))
     }
 
     /// Divides the candidates, and lists the features of those that turn. Returns the others: all for a
@@ -130,18 +152,25 @@ impl Turning {
         growable([&mut self.straight, &mut self.turning]).chain(growable(&mut self.candidates))
     }
 
+    /// Returns the lists that [`Turning::solve`] fills.
+    pub fn left(&mut self) -> impl Iterator<Item = &mut dyn GrowableOutput> {
+        growable(self.left.iter_mut().chain(&mut self.walks))
+    }
+
     /// Returns the lists, with names: for comparing machines.
     pub fn between(&self) -> Vec<Named<'_>> {
         if self.straight.capacity() + self.turning.capacity() == 0 {
             return Vec::new();
         }
         let [vf, ee] = &self.candidates;
-        vec![
+        let mut all = vec![
             named("narrow: straight", &self.straight),
             named("narrow: turning", &self.turning),
             named("narrow: vf turning", vf),
             named("narrow: ee turning", ee),
-        ]
+        ];
+        all.extend(named_lists(&self.left, LEFT).chain(named_lists(&self.walks, WALKS)));
+        all
     }
 
     /// Returns the pairs that the solver tests.
@@ -162,29 +191,44 @@ impl Turning {
         if given.frames.turns.is_empty() || given.is_sample {
             return Ok(());
         }
-        let listed = |kind: usize| Listed {
-            pairs: tested[kind].output(given.counters),
-            begun: Output::EMPTY,
-            hits: hits[kind].output(given.counters),
-            left: Output::EMPTY,
-        };
         let (frames, rest) = R::in_f64(given.frames, given.rest);
-        let rung = RungArgs {
-            frames,
-            faces: given.faces,
-            edges: given.features.edges.span(),
-            vf: listed(0),
-            ee: listed(1),
-            vf_asked: Output::EMPTY,
-            ee_asked: Output::EMPTY,
-            earliest,
-            counters: given.counters,
-            tolerances,
-            params: certified.params(),
-            flags: RungFlags::NONE,
-            pad: 0,
+        let (left, walks) = (self.left.each_ref(), self.walks.each_ref());
+        let args = |pairs: [&List<Pair>; 2], leaves: Option<[&List<Pair>; 2]>, params: Params| {
+            let listed = |kind: usize| Listed {
+                pairs: pairs[kind].output(given.counters),
+                begun: Output::EMPTY,
+                hits: hits[kind].output(given.counters),
+                left: leaves.map_or(Output::EMPTY, |leaves| leaves[kind].output(given.counters)),
+            };
+            let rung = RungArgs {
+                frames,
+                faces: given.faces,
+                edges: given.features.edges.span(),
+                vf: listed(0),
+                ee: listed(1),
+                vf_asked: Output::EMPTY,
+                ee_asked: Output::EMPTY,
+                earliest,
+                counters: given.counters,
+                tolerances,
+                params,
+                flags: RungFlags::NONE,
+                pad: 0,
+            };
+            (pairs.into_iter().map(List::capacity).sum::<usize>(), TurningArgs { rung, rest })
         };
-        let pairs: usize = tested.into_iter().map(List::capacity).sum();
-        launch::at_once::<narrow_turning>(given.device, pairs, &TurningArgs { rung, rest })
+        let params = certified.params();
+        let mut last = tested;
+        if !certified.is_apart() {
+            // One slice decides most pairs. Then lanes of a warp do the same.
+            let one = Params { max_iterations: params.max_iterations.min(1), ..params };
+            for (pairs, leaves, params) in [(tested, left, one), (left, walks, params)] {
+                let (pairs, args) = args(pairs, Some(leaves), params);
+                launch::at_once::<narrow_turning_common>(given.device, pairs, &args)?;
+            }
+            last = walks;
+        }
+        let (pairs, args) = args(last, None, params);
+        launch::at_once::<narrow_turning>(given.device, pairs, &args)
     }
 }

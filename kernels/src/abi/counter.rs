@@ -177,6 +177,14 @@ counters! { 0;
     VF_TURNING,
     /// Edge/edge candidates of those.
     EE_TURNING,
+    /// Vertex/face pairs of those that one slice leaves.
+    VF_TURNING_LEFT,
+    /// Edge/edge pairs that it leaves.
+    EE_TURNING_LEFT,
+    /// Vertex/face pairs of those that are no common case: they take the walk.
+    VF_TURNING_WALKS,
+    /// Edge/edge pairs that take the walk.
+    EE_TURNING_WALKS,
     /// Vertex/face pairs that are not excluded, in a scene that excludes some.
     VF_KEPT,
     /// Edge/edge pairs that are not excluded.

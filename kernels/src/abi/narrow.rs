@@ -300,9 +300,9 @@ arguments! {
         /// The thickness of every vertex.
         radii: Span<f64>,
     }
-    /// `narrow_turning`: the pairs of bodies that turn, in f64.
+    /// `narrow_turning_common`, `narrow_turning`: the pairs of bodies that turn, in f64.
     TurningArgs {
-        /// Pairs, lists, parameters. Lists of the next rung are empty.
+        /// Pairs, lists, parameters. The second kernel leaves no pair.
         rung: RungArgs<f64>,
         /// Vertices of rigid bodies, as they are without a pose.
         rest: Span<Point<f64>>,

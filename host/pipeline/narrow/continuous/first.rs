@@ -101,7 +101,7 @@ impl ContinuousNarrow {
         };
         let pairs = growable(pairs).chain(growable(thin.iter_mut().flatten())).chain(growable(turning));
         let rungs = self.rungs.lists().chain(self.thin.iter_mut().flat_map(Thin::left));
-        pairs.chain(growable(hits)).chain(rungs).collect()
+        pairs.chain(growable(hits)).chain(rungs).chain(self.turning.left()).collect()
     }
 
     /// Launches the second pass, behind the whole first one.

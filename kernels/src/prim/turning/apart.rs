@@ -25,7 +25,8 @@
 //! The first ones are so short that both bodies together turn by at most `TURN` in one. A window
 //! in which the first directions leave a test is halved, twice at most. Only in the shortest are
 //! all directions tried. Behind a window the next is as long as its place allows. Times are
-//! multiples of a power of two, so they are exact.
+//! multiples of a power of two, so they are exact. If both turn by at most `LITTLE` in the step, the
+//! window is the step: shorter ones would part few tests more.
 //!
 //! # Roundings
 //!
@@ -54,7 +55,10 @@ use crate::math::{Real, Vec3, pick, round};
 
 /// The most that both bodies turn in a first window, together. Radians; a cost, proves nothing.
 const TURN: f64 = 0.4;
-/// The shortest windows of a first one. Count; a cost, proves nothing.
+/// The most that both bodies turn, together, in a step that is one window. Radians; a cost, proves
+/// nothing.
+const LITTLE: f64 = 0.05;
+/// The shortest windows of a first one, or 1 in a step that is one window. Count; a cost, proves nothing.
 const SHORTEST: u32 = 4;
 /// Directions in windows that can be halved, and in others.
 const FEW: u32 = 3;
@@ -108,6 +112,8 @@ pub struct Course {
     scale: f64,
     /// First windows: a power of two, 32 at most.
     first: u32,
+    /// The shortest windows of a first one: a power of two.
+    shortest: u32,
 }
 
 impl Course {
@@ -137,11 +143,13 @@ impl Course {
         while wa + wb > TURN * first as f64 && first < 32 {
             first *= 2;
         }
+        let shortest = if wa + wb <= LITTLE { 1 } else { SHORTEST };
         let parts = reach.parts();
         let scale = f64::pow2(-(parts.exponent + 63 - parts.mantissa.leading_zeros() as i32));
         let rates = Rates::of(a.phi, b.phi, &pivot, &a.points, &b.points);
         let error = TURNING_PLACE * reach;
-        Some(Course { turns, pivot, a: a.points, b: b.points, rates, reach, error, scale, first })
+        let [a, b] = [a.points, b.points];
+        Some(Course { turns, pivot, a, b, rates, reach, error, scale, first, shortest })
     }
 
     /// Whether both bodies turn so far that there are several first windows: then balls, which no
@@ -281,20 +289,21 @@ impl Course {
     /// stay farther apart than `gap`.
     #[inline(always)]
     pub fn open(&self, gap: f64, tests: u32) -> u32 {
-        self.open_by(gap, tests, SHORTEST, &Needed::ALL)
+        self.open_by(gap, tests, self.shortest, &Needed::ALL)
     }
 
     /// The same, if the first window leaves a test by its first directions.
     #[inline(always)]
     pub fn open_in_halves(&self, gap: f64, tests: u32) -> u32 {
-        self.open_by(gap, tests, if self.turns_far() { SHORTEST } else { SHORTEST / 2 }, &Needed::ALL)
+        let halves = !self.turns_far() && self.shortest > 1;
+        self.open_by(gap, tests, if halves { self.shortest / 2 } else { self.shortest }, &Needed::ALL)
     }
 
     /// [`Course::open`], beginning with a window of `size` shortest ones, with less than is needed:
     /// tests show that it is needed.
     #[inline(always)]
     pub fn open_by(&self, gap: f64, tests: u32, size: u32, needed: &Needed) -> u32 {
-        let count = SHORTEST * self.first;
+        let count = self.shortest * self.first;
         let unit = 1.0 / count as f64;
         let (mut tests, mut left) = (tests, 0);
         let mut from = self.start();
@@ -314,7 +323,7 @@ impl Course {
             if tests == 0 || begin >= count {
                 return left;
             }
-            while size < SHORTEST && begin & (2 * size - 1) == 0 {
+            while size < self.shortest && begin & (2 * size - 1) == 0 {
                 size *= 2;
             }
             from = to;
@@ -332,7 +341,7 @@ pub fn open(a: &Side, b: &Side, gap: f64, tests: u32) -> u32 {
 /// [`open`], with less than is needed: for tests, which show that it is needed.
 #[inline(always)]
 pub fn open_by(a: &Side, b: &Side, gap: f64, tests: u32, needed: &Needed) -> u32 {
-    Course::new(a, b).map_or(tests, |course| course.open_by(gap, tests, SHORTEST, needed))
+    Course::new(a, b).map_or(tests, |course| course.open_by(gap, tests, course.shortest, needed))
 }
 
 #[cfg(test)]

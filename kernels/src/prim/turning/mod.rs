@@ -15,6 +15,7 @@
 //! | [`window`] | the part of a slice in which boxes meet |
 //! | [`certificate`] | a certain contact |
 //! | [`ahead`] | a look for a certain contact of features that are near |
+//! | [`common`] | the common case: one contact, and planes before it |
 //! | [`solve`] | the walk through the step, turn by turn; `next` has the slices behind the first |
 //! | [`apart`] | before all that: features of two triangles that planes keep apart |
 //!
@@ -51,6 +52,7 @@
 pub mod ahead;
 pub mod apart;
 pub mod certificate;
+pub mod common;
 pub mod motion;
 mod next;
 pub mod place;
@@ -82,14 +84,14 @@ pub struct Side {
 /// Whether, and when, a vertex first comes within the separation of a closed face.
 #[inline]
 pub fn vertex_face(v: &Side, f: &Side, p: &Params) -> Verdict {
-    Motion::<3>::new(v, f).walk(p)
+    Motion::<3>::new(v, f).verdict(p)
 }
 
 /// Whether, and when, two closed edges first come within the separation. The same bits for both
 /// orders of the sides.
 #[inline]
 pub fn edge_edge(a: &Side, b: &Side, p: &Params) -> Verdict {
-    Motion::of_edges(a, b).walk(p)
+    Motion::of_edges(a, b).verdict(p)
 }
 
 impl Motion<4> {

@@ -103,6 +103,12 @@ impl<const N: usize> Motion<N> {
             || self.is_apart_between(&c, [from.direction, to.direction], separation)
     }
 
+    /// The verdict: of the common case, or of the walk.
+    #[inline]
+    pub fn verdict(&self, p: &Params) -> Verdict {
+        self.common(p).unwrap_or_else(|| self.walk(p))
+    }
+
     /// Walks through the step.
     #[inline(always)]
     pub fn walk(&self, p: &Params) -> Verdict {

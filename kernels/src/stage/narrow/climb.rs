@@ -157,7 +157,7 @@ fn unless_later<R: Real, S: Grid, L: Lane, const N: usize>(
 
 /// The result of a rung for a pair.
 #[derive(Clone, Copy)]
-enum Tested {
+pub(super) enum Tested {
     /// Decided.
     Verdict(Verdict),
     /// Left to the next rung.
@@ -227,7 +227,7 @@ const LEFT: u32 = 1 << 16;
 
 /// Tests each pair of both kinds.
 #[inline(always)]
-fn rung<R: Real, B: Block>(
+pub(super) fn rung<R: Real, B: Block>(
     block: &mut B,
     args: &RungArgs<R>,
     vf: impl Fn(&B::Lane, Pair) -> Tested,

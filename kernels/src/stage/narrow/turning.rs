@@ -3,9 +3,11 @@
 //!          [`crate::prim::turning`].
 //! Launch   [`features()`] over the pairs, a warp a block, which leaves out features that planes
 //!          keep apart ([`crate::prim::turning::apart`]), and of bodies that turn far triangles in
-//!          balls that stay apart; then [`solve`] over its lists, both kinds in one launch: as many
-//!          blocks of one warp as run at once. A lane a pair, and the next one when its walk has
-//!          ended. Only in a step in which a body may turn.
+//!          balls that stay apart; then [`common`] over its lists with one slice, [`common`] over
+//!          what that leaves with all, and [`solve`] over the rest. Each has both kinds in one
+//!          launch: as many blocks of one warp as run at once. In `common` a lane has a pair; in
+//!          `solve` it takes the next one when its walk has ended. With a separation `solve` has all
+//!          pairs. Only in a step in which a body may turn.
 //! Reads    pairs, their features, bodies that turn, points at rest and vertices; tolerances of
 //!          bodies, if they differ.
 //! Writes   contacts and undecided pairs with bounds of toi; or the earliest.
@@ -13,13 +15,13 @@
 //! After    {pairs that meet on their true paths} ⊆ listed; no time is late.
 //!          earliest = min {(toi, undecided) of each pair of the continuous query}: a walk ends if
 //!          all before a known time is clear. So the result is the same in any order.
-//! Room     pairs, hits: counted past the end, grown, run again.
+//! Room     pairs, hits, left: counted past the end, grown, run again.
 //! Cost     8 B pair, 160 B each of two bodies and 24 B a vertex (gathered). A pair of triangles
 //!          takes some 1,500 operations, half of them in f32; those that one window does not decide
-//!          take them again, and three times as many. About 6 slices and 17 places a pair of
-//!          features.
+//!          take as many again, or four times as many if both turn by more than 3 degrees. A pair of
+//!          features: about 8 places and one slice in `common`, 6 slices and 17 places in `solve`.
 
-use super::climb::emit;
+use super::climb::{self, Tested, emit};
 use super::features::{VERTICES, owned, two_edges, vertex_and_face};
 use super::{of_edge_edge, of_vertex_face};
 use crate::abi::{
@@ -124,20 +126,58 @@ fn in_order<L: Lane>(lane: &L, args: &TurningFeaturesArgs, pair: Pair) -> Pair {
     if is_first { pair } else { Pair { a: pair.b, b: pair.a } }
 }
 
+/// The verdicts of both kinds in the common case; the other pairs are left.
+pub fn common<B: Block>(block: &mut B, args: &TurningArgs) {
+    let rung = &args.rung;
+    let places = (&rung.frames, args.rest);
+    climb::rung(
+        block,
+        rung,
+        |lane, pair| unless_late(lane, rung, || of_face(lane, rung, places, pair)),
+        |lane, pair| unless_late(lane, rung, || of_edges(lane, rung, places, pair)),
+    );
+}
+
+/// The common case of a pair, unless every verdict is late. All its slices decide whether it has one,
+/// so no other time may end it.
+#[inline(always)]
+fn unless_late<L: Lane, const N: usize>(
+    lane: &L,
+    args: &RungArgs<f64>,
+    motion: impl FnOnce() -> (Motion<N>, Params),
+) -> Tested {
+    if is_late(lane, args, 0.0) {
+        return Tested::Verdict(Verdict::separated(args.params.end, 0));
+    }
+    let (motion, params) = motion();
+    motion.common(&params).into()
+}
+
 /// The contacts of both kinds.
 pub fn solve<B: Block>(block: &mut B, args: &TurningArgs) {
     let rung = &args.rung;
     let places = (&rung.frames, args.rest);
-    walk_all(block, rung, &rung.vf, |lane, pair| {
-        let face = lane.read(rung.faces, pair.b);
-        let [v, f] = sides(lane, places, &[pair.a], &face);
-        (Motion::<3>::new(&v, &f), of_vertex_face(lane, rung, pair))
-    });
-    walk_all(block, rung, &rung.ee, |lane, pair| {
-        let ends = [pair.a, pair.b].map(|edge| lane.read(rung.edges, edge));
-        let [a, b] = sides(lane, places, &ends[0], &ends[1]);
-        (Motion::of_edges(&a, &b), of_edge_edge(lane, rung, pair))
-    });
+    walk_all(block, rung, &rung.vf, |lane, pair| of_face(lane, rung, places, pair));
+    walk_all(block, rung, &rung.ee, |lane, pair| of_edges(lane, rung, places, pair));
+}
+
+/// Places of vertices in the step, and without a pose.
+type Places<'a> = (&'a Positions<f64>, Span<Point<f64>>);
+
+/// The motion of a vertex and a face, and its parameters.
+#[inline(always)]
+fn of_face<L: Lane>(lane: &L, args: &RungArgs<f64>, places: Places, pair: Pair) -> (Motion<3>, Params) {
+    let face = lane.read(args.faces, pair.b);
+    let [v, f] = sides(lane, places, &[pair.a], &face);
+    (Motion::new(&v, &f), of_vertex_face(lane, args, pair))
+}
+
+/// The motion of two edges, and its parameters.
+#[inline(always)]
+fn of_edges<L: Lane>(lane: &L, args: &RungArgs<f64>, places: Places, pair: Pair) -> (Motion<4>, Params) {
+    let ends = [pair.a, pair.b].map(|edge| lane.read(args.edges, edge));
+    let [a, b] = sides(lane, places, &ends[0], &ends[1]);
+    (Motion::of_edges(&a, &b), of_edge_edge(lane, args, pair))
 }
 
 /// Walks through the step with each pair of a kind. Lanes take turns together; those whose walks
@@ -202,6 +242,12 @@ fn walk_all<B: Block, const N: usize>(
     }
 }
 
+/// Whether only the earliest time is wanted, and no verdict that begins at this time would lower it.
+#[inline(always)]
+fn is_late<L: Lane>(lane: &L, args: &RungArgs<f64>, t: f64) -> bool {
+    !args.earliest.is_empty() && earliest::key(t, false) >= lane.fetch_load(args.earliest, earliest::KEY)
+}
+
 /// A turn of a walk. It ends as separated if only the earliest time is wanted and no verdict of the
 /// walk begins before a known time.
 #[inline(always)]
@@ -211,9 +257,7 @@ fn turn<L: Lane, const N: usize>(
     motion: &Motion<N>,
     walk: &mut Walk<N>,
 ) -> Option<Verdict> {
-    if !args.earliest.is_empty()
-        && earliest::key(walk.clear_until(), false) >= lane.fetch_load(args.earliest, earliest::KEY)
-    {
+    if is_late(lane, args, walk.clear_until()) {
         return Some(Verdict::separated(args.params.end, 0));
     }
     walk.turn(motion, &args.params)
@@ -224,7 +268,7 @@ fn turn<L: Lane, const N: usize>(
 #[inline(always)]
 fn sides<L: Lane, const P: usize, const Q: usize>(
     lane: &L,
-    places: (&Positions<f64>, Span<Point<f64>>),
+    places: Places,
     p: &[u32; P],
     q: &[u32; Q],
 ) -> [Side; 2] {
@@ -237,7 +281,7 @@ fn sides<L: Lane, const P: usize, const Q: usize>(
 #[inline(always)]
 fn side<L: Lane, const N: usize>(
     lane: &L,
-    (frames, rest): (&Positions<f64>, Span<Point<f64>>),
+    (frames, rest): Places,
     vertices: &[u32; N],
     (own, other): (&Option<TurnRecord>, &Option<TurnRecord>),
 ) -> Side {
