@@ -139,7 +139,7 @@ fn a_certificate_without_its_radius_is_noticed() {
         let motion = Motion::<N>::new(&a, &b);
         let (from, to) = (motion.at((c.t - 1e-6).max(0.0)), motion.at((c.t + 1e-6).min(1.0)));
         if by == By::Both {
-            return motion.only(&from, &to, &params(c), |moved| part * moved);
+            return motion.only(&from, &to, &params(c), |moved| part * moved).map(|(found, _)| found);
         }
         motion.contact_by(&from, &to, c.tolerance * motion.scale, &mut -1.0, |moved| part * moved)
     }

@@ -26,6 +26,64 @@ const STEPS: u32 = 24;
 /// Lengths of the certain contact's time that are tried, at most.
 const LENGTHS: u32 = 10;
 
+/// Half of the longest time of a certain contact that is tried, in times in which features move by the
+/// tolerance.
+pub(super) const HALF: f64 = 0.2;
+
+/// Two times between which the volume has a root: false position, in its Illinois form.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bracket {
+    /// Times and volumes at both ends.
+    pub ends: [(f64, f64); 2],
+    /// The numbers that weigh the next time.
+    weights: [f64; 2],
+    /// The end that moved last: 1 or 2.
+    moved: u32,
+}
+
+impl Bracket {
+    /// A bracket that has not begun.
+    const NONE: Self = Bracket { ends: [(0.0, 0.0); 2], weights: [0.0; 2], moved: 0 };
+
+    /// Between two places at which the volume has opposite signs.
+    #[inline(always)]
+    pub fn new<const N: usize>(from: &Place<N>, to: &Place<N>) -> Self {
+        let ends = [(from.t, from.volume), (to.t, to.volume)];
+        Bracket { ends, weights: [from.volume, to.volume], moved: 0 }
+    }
+
+    /// The time at which the root is sought next, and whether it is between the ends.
+    #[inline(always)]
+    pub fn next(&self) -> (f64, bool) {
+        let ([low, high], [a, b]) = (self.ends, self.weights);
+        let t = low.0 + (high.0 - low.0) * (a / (a - b));
+        let t = if t > low.0 && t < high.0 { t } else { 0.5 * (low.0 + high.0) };
+        (t, t > low.0 && t < high.0)
+    }
+
+    /// Whether the volume of a place has the sign of the first end.
+    #[inline(always)]
+    pub fn is_first<const N: usize>(&self, place: &Place<N>) -> bool {
+        (place.volume < 0.0) == (self.ends[0].1 < 0.0)
+    }
+
+    /// Moves the end of that sign to a place between both.
+    #[inline(always)]
+    pub fn narrow<const N: usize>(&mut self, place: &Place<N>) {
+        let at = (place.t, place.volume);
+        let [a, b] = self.weights;
+        if self.is_first(place) {
+            self.ends[0] = at;
+            self.weights = [at.1, if self.moved == 1 { 0.5 * b } else { b }];
+            self.moved = 1;
+        } else {
+            self.ends[1] = at;
+            self.weights = [if self.moved == 2 { 0.5 * a } else { a }, at.1];
+            self.moved = 2;
+        }
+    }
+}
+
 /// A search for a certain contact between two times. It needs one place a turn.
 #[derive(Clone, Copy, Debug)]
 pub struct Search<const N: usize> {
@@ -33,11 +91,8 @@ pub struct Search<const N: usize> {
     pub wanted: f64,
     /// Times and volumes at both ends.
     ends: [(f64, f64); 2],
-    /// Times and volumes about the root, and the numbers that weigh the next one.
-    around: [(f64, f64); 2],
-    weights: [f64; 2],
-    /// The end that moved last: 1 or 2.
-    moved: u32,
+    /// The root is in it.
+    around: Bracket,
     /// Steps to the root, then lengths that were tried.
     steps: u32,
     seek: Seek,
@@ -73,9 +128,7 @@ impl<const N: usize> Search<N> {
     pub const NONE: Self = Search {
         wanted: 0.0,
         ends: [(0.0, 0.0); 2],
-        around: [(0.0, 0.0); 2],
-        weights: [0.0; 2],
-        moved: 0,
+        around: Bracket::NONE,
         steps: 0,
         seek: Seek::Root,
         half: 0.0,
@@ -98,9 +151,9 @@ impl<const N: usize> Search<N> {
         if !(from.side() * to.side() < 0.0) || (from.t <= *failed && *failed <= to.t) {
             return false;
         }
-        self.ends = [(from.t, from.volume), (to.t, to.volume)];
-        (self.around, self.weights) = (self.ends, [from.volume, to.volume]);
-        (self.moved, self.steps, self.seek) = (0, 0, Seek::Root);
+        self.around = Bracket::new(from, to);
+        self.ends = self.around.ends;
+        (self.steps, self.seek) = (0, Seek::Root);
         (self.tolerance, self.speed) = (tolerance, speed);
         self.root = *from;
         if !self.has_next() {
@@ -109,15 +162,12 @@ impl<const N: usize> Search<N> {
         true
     }
 
-    /// Sets the time at which the root is sought next, by the rule of false position in its Illinois
-    /// form, unless there is none.
+    /// Sets the time at which the root is sought next, unless there is none.
     #[inline(always)]
     fn has_next(&mut self) -> bool {
-        let ([low, high], [a, b]) = (self.around, self.weights);
-        let t = low.0 + (high.0 - low.0) * (a / (a - b));
-        let t = if t > low.0 && t < high.0 { t } else { 0.5 * (low.0 + high.0) };
-        self.wanted = t;
-        self.steps < STEPS && t > low.0 && t < high.0
+        let is_between;
+        (self.wanted, is_between) = self.around.next();
+        self.steps < STEPS && is_between
     }
 
     /// Goes on with a certificate about the root. The longest time is tried first: before a short
@@ -125,10 +175,10 @@ impl<const N: usize> Search<N> {
     #[inline(always)]
     fn certify(&mut self) {
         let slope = |[a, b]: [(f64, f64); 2]| ((b.1 - a.1) / (b.0 - a.0)).abs();
-        let near = slope(self.around);
+        let near = slope(self.around.ends);
         let slope = if near > 0.0 { near } else { slope(self.ends) };
         self.least = 1.5 * self.root.error / slope + 4.0 * U64;
-        self.half = self.least.max(0.2 * self.tolerance / self.speed);
+        self.half = self.least.max(HALF * self.tolerance / self.speed);
         self.steps = 0;
         self.seek_before();
     }
@@ -154,20 +204,11 @@ impl<const N: usize> Search<N> {
                 self.steps += 1;
                 self.root = *place;
                 if place.side() != 0.0 {
-                    let at = (place.t, place.volume);
-                    let [a, b] = self.weights;
-                    if (place.volume < 0.0) == (self.around[0].1 < 0.0) {
-                        self.around[0] = at;
-                        self.weights = [at.1, if self.moved == 1 { 0.5 * b } else { b }];
-                        self.moved = 1;
-                    } else {
-                        self.around[1] = at;
-                        self.weights = [if self.moved == 2 { 0.5 * a } else { a }, at.1];
-                        self.moved = 2;
-                    }
+                    self.around.narrow(place);
                     // The features are farther apart than they move until the root: it is one of
                     // their planes alone.
-                    let left = self.around[1].0 - self.around[0].0;
+                    let [low, high] = self.around.ends;
+                    let left = high.0 - low.0;
                     if place.distance > self.speed * left + 4.0 * motion.error {
                         return Turn::End(None);
                     }
@@ -204,9 +245,7 @@ impl<const N: usize> Search<N> {
         let is_least = self.half <= self.least;
         let mut is_over = false;
         if before.side() * after.side() < 0.0 {
-            let far = (after.t - root.t).max(root.t - before.t) * TURN_UP;
-            let most = motion.bounds(before, after).speed * far + TURNING_CURVE * motion.error;
-            if root.holds(moved(most * TURN_UP)) {
+            if motion.holds_between([before, root, after], moved) {
                 return Turn::End(Some(Contact { from: before.t, to: after.t }));
             }
             is_over = is_least;
@@ -226,6 +265,19 @@ impl<const N: usize> Search<N> {
 }
 
 impl<const N: usize> Motion<N> {
+    /// Whether the hull of the control vectors holds the origin whenever it is in one plane with them
+    /// between two places, by a place between those.
+    #[inline(always)]
+    pub(super) fn holds_between(
+        &self,
+        [before, root, after]: [&Place<N>; 3],
+        moved: impl Fn(f64) -> f64,
+    ) -> bool {
+        let far = (after.t - root.t).max(root.t - before.t) * TURN_UP;
+        let most = self.bounds(before, after).speed * far + TURNING_CURVE * self.error;
+        root.holds(moved(most * TURN_UP))
+    }
+
     /// A certain contact between two times, if the volume has opposite signs at them and its root
     /// is one. `failed` is a root that is none, as far as doubles can say; it is not tried again.
     #[inline(never)]
