@@ -54,7 +54,6 @@ impl Detector {
     /// update named bodies, but none with two ends. [`Error::OutOfMemory`] if slices do not fit
     /// either. Others are those of the device. There is no partial answer.
     pub fn query<Q: TypedQuery>(&mut self, query: &Q) -> Result<Answer<Q::Rows>, Error> {
-        self.device.wake();
         self.device.work();
         let answered =
             self.question((*query).into()).and_then(|question| self.answer(&question, Instant::now()));
