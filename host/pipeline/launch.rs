@@ -41,6 +41,16 @@ pub fn at_once<E: Entry>(device: &Device, capacity: usize, args: &E::Args) -> Re
     at_once_in::<E>(device, Place::Whole, capacity, args)
 }
 
+/// The same, with a block an item if there are few: for long work that lanes of a warp do not do
+/// together.
+///
+/// # Errors
+/// Device errors.
+pub fn spread<E: Entry>(device: &Device, capacity: usize, args: &E::Args) -> Result<(), Error> {
+    let lanes = if device.is_gpu() { E::LANES as usize } else { 1 };
+    at_once::<E>(device, capacity.saturating_mul(lanes), args)
+}
+
 /// As [`at_once`], in a part of the device: for launches at the same time.
 ///
 /// # Errors

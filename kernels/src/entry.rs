@@ -167,7 +167,7 @@ kernels! {
     narrow_filter_placed: discrete::filter::<f64, Placed, B>, [PlacedArgs], WIDE, 0;
     narrow_exact_placed: certain::exact::<f64, Placed, B>, [PlacedArgs], NARROW, certain::SHARED;
     narrow_start_filter_f32: discrete::filter::<f32, Start, B>, [DiscreteArgs<f32>], WIDE, discrete::shared_bytes(WIDE), registers = 64;
-    narrow_start_filter_f64: discrete::filter::<f64, Start, B>, [DiscreteArgs<f64>], WIDE, discrete::shared_bytes(WIDE);
+    narrow_start_filter_f64: discrete::filter::<f64, Start, B>, [DiscreteArgs<f64>], WIDE, discrete::shared_bytes(WIDE), registers = 128;
     narrow_start_wide_f32: certain::wide::<Start, B>, [DiscreteArgs<f32>], NARROW, certain::SHARED;
     narrow_start_exact_f32: certain::exact::<f32, Start, B>, [DiscreteArgs<f32>], NARROW, certain::SHARED;
     narrow_start_exact_f64: certain::exact::<f64, Start, B>, [DiscreteArgs<f64>], NARROW, certain::SHARED;
@@ -220,10 +220,11 @@ kernels! {
     narrow_first_pairs_f32: first::pairs::<f32, B>, [FirstPairsArgs<f32>], RUNG, 0;
     narrow_first_pairs_f64: first::pairs::<f64, B>, [FirstPairsArgs<f64>], RUNG, 0;
     narrow_first_hits: first::hits, [FirstHitsArgs], NARROW, 0;
-    narrow_divide: divide::divide, [DivideArgs], WIDE, 0;
+    narrow_divide: divide::divide, [DivideArgs], RUNG, 0;
     narrow_divide_thick: divide_thick::divide, [DivideThickArgs], WIDE, 0;
     narrow_sift_thick: divide_thick::sift, [SiftThickArgs], WIDE, 0;
-    narrow_turning_features: turning::features, [TurningFeaturesArgs], turning::LANES, turning::SHARED;
+    narrow_turning_chords: turning::features::chords, [TurningFeaturesArgs], turning::features::LANES, turning::features::SHARED_OF_CHORDS;
+    narrow_turning_features: turning::features::features, [TurningFeaturesArgs], turning::features::LANES, turning::features::SHARED;
     narrow_turning_common: turning::common, [TurningArgs], SPREAD, 0;
     narrow_turning: turning::solve, [TurningArgs], SPREAD, 0;
     narrow_near_f32: near::near::<f32, B>, [NearArgs<f32>], RUNG, 0, registers = 64;

@@ -15,4 +15,6 @@ mod sweep;
 mod swell;
 mod turning;
 mod turning_apart;
+mod turning_bodies;
+mod turning_chords;
 mod volume;

@@ -18,7 +18,7 @@ pub const STAGES: [(&str, &str); 10] = [
 const ORDER: usize = 7;
 
 /// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
-const KERNELS: [(&str, &str); 119] = [
+const KERNELS: [(&str, &str); 120] = [
     ("place_starts", "positions at t = 0, stored apart from those at the end"),
     ("place_turns", "rotation vectors and paths of bodies that turn"),
     ("place_poses", "poses of instances, from the caller's memory and the host"),
@@ -107,8 +107,9 @@ const KERNELS: [(&str, &str); 119] = [
     ("narrow_first_hits", "contacts at the earliest time"),
     ("narrow_divide_thick", "candidates without a thickness, and those with one"),
     ("narrow_sift_thick", "feature pairs without a thickness, and those with one"),
-    ("narrow_divide", "candidates of bodies that turn, and the others"),
-    ("narrow_turning_features", "features of those that no plane keeps apart"),
+    ("narrow_divide", "candidates of bodies that turn, and of those that go straight"),
+    ("narrow_turning_chords", "features of those that no plane keeps apart, by their chords"),
+    ("narrow_turning_features", "the same of bodies that turn far"),
     ("narrow_turning_common", "contacts on arcs of features that meet once"),
     ("narrow_turning", "contacts on arcs, slice by slice"),
     ("narrow_least", "the least distance of triangles"),

@@ -212,7 +212,7 @@ impl Instances {
         motion.reserve(device, is_at_rest)
     }
 
-    /// Readies oriented boxes of tiles, for queries that need no steps.
+    /// Readies oriented boxes of tiles.
     ///
     /// # Errors
     /// Device errors.

@@ -14,7 +14,7 @@ use nearmiss_kernels::abi::{
     TurningFeaturesArgs, counter,
 };
 use nearmiss_kernels::entry::{
-    narrow_divide, narrow_turning, narrow_turning_common, narrow_turning_features,
+    narrow_divide, narrow_turning, narrow_turning_chords, narrow_turning_common, narrow_turning_features,
 };
 use nearmiss_kernels::prim::inclusion::Params;
 
@@ -36,9 +36,11 @@ const WALKS: OfKinds = [
 pub struct Turning {
     /// Triangle pairs of which neither body turns.
     straight: List<Pair>,
-    /// The others.
+    /// The others, if no direction parts them.
     turning: List<Pair>,
-    /// Vertex/face and edge/edge pairs of those.
+    /// Those of them that leave their chords far.
+    far: List<Pair>,
+    /// Vertex/face and edge/edge pairs of both lists that turn.
     candidates: [List<Pair>; 2],
     /// Those of them that are not excluded, in a scene that excludes some.
     kept: Option<Kept>,
@@ -46,6 +48,8 @@ pub struct Turning {
     left: [List<Pair>; 2],
     /// Those of them that take the walk.
     walks: [List<Pair>; 2],
+    /// Only the earliest time is wanted. Then how many pairs are left depends on when it is known.
+    is_earliest: bool,
 }
 
 impl Turning {
@@ -58,6 +62,7 @@ impl Turning {
         Ok(Turning {
             straight: list("triangle pairs that go straight", counter::STRAIGHT_PAIRS)?,
             turning: list("triangle pairs that turn", counter::TURNING_PAIRS)?,
+            far: list("triangle pairs that turn far", counter::FAR_PAIRS)?,
             candidates: [
                 list("vertex/face pairs that turn", counter::VF_TURNING)?,
                 list("edge/edge pairs that turn", counter::EE_TURNING)?,
@@ -65,7 +70,13 @@ impl Turning {
             kept: None,
             left: lists(device, LEFT, [0, 0])?,
             walks: lists(device, WALKS, [0, 0])?,
+            is_earliest: false,
         })
+    }
+
+    /// The same, for the earliest time alone.
+    pub fn for_earliest(self) -> Self {
+        Turning { is_earliest: true, ..self }
     }
 
     /// Drops pairs of features that are excluded.
@@ -101,13 +112,19 @@ impl Turning {
         self.kept.iter_mut().flat_map(Kept::growable)
     }
 
-    /// Makes room for all candidates: then a step in which other bodies turn has room too.
+    /// Makes room. All candidates may go straight: the next step may have other bodies that turn. If
+    /// only the earliest time is wanted, all pairs of features may be left.
     fn reserve<R: Precision>(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
-        let pairs = given.pairs.room() as usize;
-        self.straight.reserve(given.device, pairs)?;
-        self.turning.reserve(given.device, pairs)?;
-        let mut few = self.candidates.iter_mut().chain(&mut self.left).chain(&mut self.walks);
-        few.try_for_each(|list| list.reserve(given.device, FEW))
+        self.straight.reserve(given.device, given.pairs.room() as usize)?;
+        for list in [&mut self.turning, &mut self.far].into_iter().chain(&mut self.candidates) {
+            list.reserve(given.device, FEW)?;
+        }
+        for (kind, candidates) in self.candidates.iter().enumerate() {
+            let room = if self.is_earliest { candidates.capacity() } else { FEW };
+            self.left[kind].reserve(given.device, room)?;
+            self.walks[kind].reserve(given.device, room)?;
+        }
+        Ok(())
     }
 
     /// Divides the candidates, and lists the features of those that turn. Returns the others: all for a
@@ -127,29 +144,26 @@ impl Turning {
         if given.may_grow {
             self.reserve(given)?;
         }
-        let (straight, turning) = (self.straight.output(given.counters), self.turning.output(given.counters));
-        let args = DivideArgs {
-            turns: given.frames.turns,
-            faces: given.faces,
-            pairs: given.pairs,
-            straight,
-            turning,
-        };
+        let [straight, turning] = [&self.straight, &self.turning].map(|list| list.output(given.counters));
+        let (frames, rest) = R::in_f64(given.frames, given.rest);
+        let facets = given.features.facets();
+        let gap = certified.min_separation + certified.tolerance.unwrap_or(0.0) + radii;
+        let args = DivideArgs { frames, facets, pairs: given.pairs, straight, turning, gap };
         launch::striding::<narrow_divide>(given.device, given.pairs.room() as usize, &args)?;
         if !given.is_sample {
             let [vf, ee] = self.candidates.each_ref().map(|list| list.output(given.counters));
-            let (frames, rest) = R::in_f64(given.frames, given.rest);
-            let facets = given.features.facets();
-            let gap = certified.min_separation + certified.tolerance.unwrap_or(0.0) + radii;
-            let args = TurningFeaturesArgs { frames, rest, facets, pairs: turning, vf, ee, gap };
-            launch::striding::<narrow_turning_features>(given.device, self.turning.capacity(), &args)?;
+            let far = self.far.output(given.counters);
+            let args = TurningFeaturesArgs { frames, rest, facets, pairs: turning, far, vf, ee, gap };
+            launch::striding::<narrow_turning_chords>(given.device, self.turning.capacity(), &args)?;
+            let args = TurningFeaturesArgs { pairs: far, far: Output::EMPTY, ..args };
+            launch::striding::<narrow_turning_features>(given.device, self.far.capacity(), &args)?;
         }
         Ok(straight)
     }
 
     /// Returns the lists that [`Turning::divide`] fills.
     pub fn lists(&mut self) -> impl Iterator<Item = &mut dyn GrowableOutput> {
-        growable([&mut self.straight, &mut self.turning]).chain(growable(&mut self.candidates))
+        growable([&mut self.straight, &mut self.turning, &mut self.far]).chain(growable(&mut self.candidates))
     }
 
     /// Returns the lists that [`Turning::solve`] fills.
@@ -166,6 +180,7 @@ impl Turning {
         let mut all = vec![
             named("narrow: straight", &self.straight),
             named("narrow: turning", &self.turning),
+            named("narrow: far", &self.far),
             named("narrow: vf turning", vf),
             named("narrow: ee turning", ee),
         ];
@@ -229,6 +244,6 @@ impl Turning {
             last = walks;
         }
         let (pairs, args) = args(last, None, params);
-        launch::at_once::<narrow_turning>(given.device, pairs, &args)
+        launch::spread::<narrow_turning>(given.device, pairs, &args)
     }
 }

@@ -289,9 +289,8 @@ impl<R: Precision> SceneMemory<R> {
         }
         if has_vertices {
             instances.ready_motion(&self.device, (bodies, layout), kind.is_at_rest())?;
-        } else {
-            instances.ready_boxes(&self.device)?;
         }
+        instances.ready_boxes(&self.device)?;
         let deform = instances.deform();
         // Meshes that deform are refitted to vertices in the scene.
         if deform { self.ready(kind.is_at_rest()) } else { Ok(()) }

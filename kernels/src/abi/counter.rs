@@ -173,9 +173,11 @@ counters! { 0;
     STRAIGHT_PAIRS,
     /// Candidate triangle pairs of bodies of which one turns.
     TURNING_PAIRS,
-    /// Vertex/face candidates of those.
+    /// Those of them that leave their chords far.
+    FAR_PAIRS,
+    /// Vertex/face candidates of bodies that turn.
     VF_TURNING,
-    /// Edge/edge candidates of those.
+    /// Edge/edge candidates of bodies that turn.
     EE_TURNING,
     /// Vertex/face pairs of those that one slice leaves.
     VF_TURNING_LEFT,

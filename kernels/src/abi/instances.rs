@@ -225,7 +225,8 @@ arguments! {
         next: Output<NodePair>,
         /// Out: pairs of tiles.
         tile_pairs: Output<NodePair>,
-        /// Oriented boxes of tiles; empty if all meshes are refitted. Only `traverse_nodes` reads them.
+        /// Oriented boxes of tiles; empty if all meshes are refitted. `traverse_nodes_within` does not read
+        /// them.
         boxes: Span<TileBox>,
         /// Counters.
         counters: Counters,

@@ -2,7 +2,7 @@
 
 use super::{
     Begun, BodyTolerance, Counters, DiscreteFlags, ExclusionTables, Facet, Hit, NearHit, NearestHit, Output,
-    Pair, Point, Positions, RungFlags, Span, TurnRecord,
+    Pair, Point, Positions, RungFlags, Span,
 };
 use crate::math::Real;
 use crate::prim::inclusion::Params;
@@ -26,18 +26,20 @@ arguments! {
         /// The bits of a time: pairs that first meet later do not matter. Empty if all matter.
         known: Span<u64>,
     }
-    /// `narrow_divide`: candidates of bodies that turn, and the others.
+    /// `narrow_divide`: candidates of bodies that turn and may meet, and of those that go straight.
     DivideArgs {
-        /// The bodies that may turn.
-        turns: Span<TurnRecord>,
-        /// Vertex indices of every triangle.
-        faces: Span<[u32; 3]>,
+        /// Positions, and the bodies that may turn.
+        frames: Positions<f64>,
+        /// Every triangle's vertices and edges, and what it owns of them.
+        facets: Span<Facet>,
         /// Candidate triangle pairs.
         pairs: Output<Pair>,
         /// Out: those of which neither body turns.
         straight: Output<Pair>,
-        /// Out: the others.
+        /// Out: the others, if no direction parts them.
         turning: Output<Pair>,
+        /// Triangles that stay farther apart are left out: a length.
+        gap: f64,
     }
     /// `narrow_divide_thick`: candidates that may hold two features without a thickness, and those with
     /// one.
@@ -78,7 +80,8 @@ arguments! {
         /// Out: those of `thick_ee` of which a vertex has one.
         some_thick_ee: Output<Pair>,
     }
-    /// `narrow_turning_features`: triangle pairs of bodies that turn, to pairs of features.
+    /// `narrow_turning_chords`, `narrow_turning_features`: triangle pairs of bodies that turn, to pairs of
+    /// features.
     TurningFeaturesArgs {
         /// Positions.
         frames: Positions<f64>,
@@ -88,6 +91,8 @@ arguments! {
         facets: Span<Facet>,
         /// Triangle pairs.
         pairs: Output<Pair>,
+        /// Out: those that leave their chords far, from one launch to the other.
+        far: Output<Pair>,
         /// Out: vertex, face.
         vf: Output<Pair>,
         /// Out: edge, edge.

@@ -40,8 +40,10 @@ pub struct TurnRecord {
     pub end: u32,
     /// Its first vertex among the points at rest.
     pub rest: u32,
-    /// Zero.
-    pub pad: u32,
+    /// Of the vertices of all records there are as many equal stretches as records. This is the record
+    /// that has the first vertex of the one with this record's number, or the last before it. So few
+    /// records may have a vertex.
+    pub holder: u32,
     /// The rotation at the start: a quaternion of length 1.
     pub rotation: [f64; 4],
     /// The rotation vector of the step; 0 for a body that does not turn.

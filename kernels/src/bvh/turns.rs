@@ -10,12 +10,48 @@ use crate::math::{Real, Vec3};
 /// The turning body of a vertex, if it is of one.
 #[inline(always)]
 pub fn body_of<L: Lane>(lane: &L, turns: Span<TurnRecord>, vertex: u32) -> Option<TurnRecord> {
+    turning(lane, turns, vertex).map(|at| lane.read(turns, at))
+}
+
+/// The number of its record.
+#[inline(always)]
+pub fn turning<L: Lane>(lane: &L, turns: Span<TurnRecord>, vertex: u32) -> Option<u32> {
     if turns.is_empty() {
         return None;
     }
-    let at = holder(turns.len(), vertex, |k| lane.read(turns, k).vertex);
-    let record = lane.read(turns, at);
-    (vertex >= record.vertex && vertex < record.end && record.turns()).then_some(record)
+    let at = |k: u32| lane.read(turns, k);
+    let number = number_of(vertex, turns.len() as u32, at)?;
+    let record = at(number);
+    (vertex < record.end && record.turns()).then_some(number)
+}
+
+/// The number of the last record that begins at or before a vertex; `None` if the vertex is before
+/// all of them or behind. There is a record.
+#[inline(always)]
+pub fn number_of(vertex: u32, count: u32, at: impl Fn(u32) -> TurnRecord) -> Option<u32> {
+    let first = at(0).vertex;
+    let span = at(count - 1).end - first;
+    if vertex.wrapping_sub(first) >= span {
+        return None;
+    }
+    let stretch = (vertex - first) / stretch(span, count);
+    let low = at(stretch).holder;
+    let high = if stretch + 1 < count { at(stretch + 1).holder } else { count - 1 };
+    Some(low + holder((high - low + 1) as u64, vertex, |k| at(low + k).vertex))
+}
+
+/// The vertices of one of as many equal stretches as there are records: see [`TurnRecord::holder`].
+#[inline(always)]
+fn stretch(span: u32, count: u32) -> u32 {
+    span / count + 1
+}
+
+/// [`TurnRecord::holder`] of a record, by all vertices of the records from the first to the last, and
+/// the first vertex of each. Late stretches may begin behind all of them.
+#[inline(always)]
+pub fn holder_of(k: u32, (span, count): (u32, u32), begin: impl Fn(u32) -> u32) -> u32 {
+    let vertex = begin(0) as u64 + k as u64 * stretch(span, count) as u64;
+    holder(count as u64, vertex.min(u32::MAX as u64) as u32, begin)
 }
 
 /// How far the points of a triangle may leave the straight lines between both ends of the step, in

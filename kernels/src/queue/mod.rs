@@ -1,7 +1,8 @@
-//! Work units that wait: the stack of one walk, a block's buffer, a block's queue; and the tree
-//! that pairs of nodes form.
+//! Work units that wait: the stack of one walk, a block's buffer, a block's queue; the tree that pairs
+//! of nodes form; and the tests of pairs of triangles.
 
 pub mod bvtt;
+pub mod listing;
 pub mod pair;
 pub mod waiting;
 pub mod worker;

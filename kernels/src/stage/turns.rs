@@ -8,9 +8,10 @@
 //! After    turn = the given rotation vector, or that of the shorter arc: 0, exactly, between equal
 //!          rotations. path = where the poses put the pivot.
 //! Room     fixed; cannot run out.
-//! Cost     128 B of poses in, 160 B out.
+//! Cost     128 B of poses in, 160 B out, and log2 of the bodies reads.
 
 use crate::abi::{PoseRecord, TurnRecord, TurnsArgs};
+use crate::bvh::turns::holder_of;
 use crate::exec::{Block, Lane};
 use crate::math::tolerance::POSE_UNIT;
 use crate::math::turn::{Turn, between, bulge};
@@ -24,6 +25,8 @@ pub fn turns<B: Block>(block: &mut B, args: &TurnsArgs) {
         let mut i = lane.global();
         while i < count {
             let source = lane.read(args.sources, i);
+            let begin = |k| lane.read(args.sources, k).vertex;
+            let span = lane.read(args.sources, count - 1).end - begin(0);
             let poses = if source.is_lent != 0 { args.found } else { args.poses };
             // Those of the host have been divided by their length, once, as these are.
             let mut is_pose = true;
@@ -49,7 +52,7 @@ pub fn turns<B: Block>(block: &mut B, args: &TurnsArgs) {
                 vertex: source.vertex,
                 end: source.end,
                 rest: source.rest,
-                pad: 0,
+                holder: holder_of(i, (span, count), begin),
                 rotation: start.rotation,
                 turn: turn.0,
                 pivot: source.pivot,

@@ -6,7 +6,7 @@ use crate::oracle::turning::{self, Judge, Known, Pair};
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::inclusion::{Answer, Params, Verdict};
 use nearmiss_kernels::prim::turning::apart::Needed;
-use nearmiss_kernels::prim::turning::{Side, edge_edge, vertex_face};
+use nearmiss_kernels::prim::turning::{Side, chords, edge_edge, vertex_face};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::time::Instant;
@@ -126,9 +126,13 @@ pub fn judged(case: Case, most: u32, solve: impl Fn(&Case) -> Verdict) -> Judged
     let microseconds = start.elapsed().as_secs_f64() * 1e6;
     let known = Judge::new(&case.pair, case.separation).first_contact(1.0, most);
     let fault = fault(&verdict, &known, &case).or_else(|| {
-        // The filter before the test: without the tolerance, which a detector adds.
-        let is_left_out = (0..Triangles::WAYS)
-            .any(|way| Triangles::new(&case, way).are_apart(case.separation, &Needed::ALL));
+        // The filters before the test: without the tolerance, which a detector adds.
+        let is_left_out = (0..Triangles::WAYS).any(|way| {
+            let triangles = Triangles::new(&case, way);
+            triangles.are_apart(case.separation, &Needed::ALL)
+                || triangles.are_apart_by_chords(case.separation, &chords::Needed::ALL)
+                || triangles.are_parted(case.separation, 1.0)
+        });
         (is_left_out && known.is_contact()).then_some(Fault::Missed)
     });
     Judged { case, verdict, known, fault, microseconds }

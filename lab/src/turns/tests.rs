@@ -7,7 +7,7 @@ use crate::oracle::turning::Judge;
 use nearmiss_kernels::prim::inclusion::{Answer, Params, Verdict};
 use nearmiss_kernels::prim::turning::apart::Needed;
 use nearmiss_kernels::prim::turning::rates::Rate;
-use nearmiss_kernels::prim::turning::{Contact, Motion};
+use nearmiss_kernels::prim::turning::{Contact, Motion, chords};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// Times that the judge may look at, of one pair.
@@ -185,17 +185,20 @@ fn wrong_verdicts_are_noticed() {
     assert!(late > 60 && missed > 30 && false_ones > 30 && far > 30, "{late} {missed} {false_ones} {far}");
 }
 
+/// A filter: whether it leaves out the features of two triangles, within a gap.
+type Filter<'a> = &'a dyn Fn(&Triangles, f64) -> bool;
+
 /// For each filter, the pairs that it leaves out though they meet, and those that it leaves out of
 /// all that certainly stay apart.
-fn left_out<const N: usize>(names: &[&str], count: u64, filters: [Needed; N]) -> [(usize, usize, usize); N] {
+fn left_out<const N: usize>(names: &[&str], count: u64, filters: [Filter; N]) -> [(usize, usize, usize); N] {
     let mut all = [(0, 0, 0); N];
     for name in names {
         for i in 0..count {
             let c = case(7, of(name), i);
             let known = Judge::new(&c.pair, c.separation).first_contact(1.0, MOST);
             let way = i as usize / 2 % Triangles::WAYS;
-            for (needed, (missed, parted, apart)) in filters.iter().zip(&mut all) {
-                let is_left_out = Triangles::new(&c, way).are_apart(c.separation, needed);
+            for (filter, (missed, parted, apart)) in filters.iter().zip(&mut all) {
+                let is_left_out = filter(&Triangles::new(&c, way), c.separation);
                 *missed += usize::from(is_left_out && known.is_contact());
                 *apart += usize::from(known.is_apart());
                 *parted += usize::from(is_left_out && known.is_apart());
@@ -206,12 +209,23 @@ fn left_out<const N: usize>(names: &[&str], count: u64, filters: [Needed; N]) ->
 }
 
 #[test]
-fn the_filter_leaves_out_no_features_that_meet() {
+fn no_filter_leaves_out_features_that_meet() {
+    let filters: [Filter; 3] = [
+        &|pair, gap| pair.are_apart(gap, &Needed::ALL),
+        &|pair, gap| pair.are_apart_by_chords(gap, &chords::Needed::ALL),
+        &|pair, gap| pair.are_parted(gap, 1.0),
+    ];
+    let mut out = [0; 3];
     for name in FAMILIES {
-        let [(missed, parted, apart)] = left_out(&[name], 40, [Needed::ALL]);
-        println!("{name}: {missed} missed, {parted} of {apart} left out");
-        assert_eq!(missed, 0, "{name}");
+        let of_family = left_out(&[name], 40, filters);
+        println!("{name}: missed, left out, of all that are apart {of_family:?}");
+        for (out, (missed, parted, _)) in out.iter_mut().zip(of_family) {
+            assert_eq!(missed, 0, "{name}: {of_family:?}");
+            *out += parted;
+        }
     }
+    // All families are near, and most turn far: chords show little of those.
+    assert!(out[0] > 10, "{out:?}");
 }
 
 /// Half of the distance from the chord, and nine tenths of a gap.
@@ -220,11 +234,29 @@ fn a_filter_that_needs_less_is_noticed() {
     let tangent = ["large radius", "tangent", "coin", "deformable tangent", "same pivot"];
     let half = Needed { deviation: 0.5, ..Needed::ALL };
     let none = Needed { deviation: 0.0, ..Needed::ALL };
-    let [(by_half, ..), (by_none, ..)] = left_out(&tangent, 120, [half, none]);
+    let filters: [Filter; 2] =
+        [&|pair, gap| pair.are_apart(gap, &half), &|pair, gap| pair.are_apart(gap, &none)];
+    let [(by_half, ..), (by_none, ..)] = left_out(&tangent, 120, filters);
     assert!(by_half >= 2 && by_none >= 25, "{by_half}, {by_none}");
     let gap = ["separation", "separation tangent", "separation deformable"];
-    let [(missed, ..)] = left_out(&gap, 120, [Needed { gap: 0.9, ..Needed::ALL }]);
+    let less = Needed { gap: 0.9, ..Needed::ALL };
+    let [(missed, ..)] = left_out(&gap, 120, [&|pair, gap| pair.are_apart(gap, &less)]);
     assert!(missed >= 5, "{missed}");
+}
+
+/// Chords without a part of the swells, or without any.
+#[test]
+fn chords_without_swells_are_noticed() {
+    let of = |swell| chords::Needed { swell, ..chords::Needed::ALL };
+    let filters: [Filter; 4] = [
+        &|pair, gap| pair.are_apart_by_chords(gap, &of(0.5)),
+        &|pair, gap| pair.are_apart_by_chords(gap, &of(0.0)),
+        &|pair, gap| pair.are_parted(gap, 0.5),
+        &|pair, gap| pair.are_parted(gap, 0.0),
+    ];
+    let missed = left_out(&FAMILIES, 120, filters).map(|(missed, ..)| missed);
+    println!("{missed:?}");
+    assert!(missed.iter().all(|&missed| missed > 0), "{missed:?}");
 }
 
 /// Fewer slices give fewer verdicts, the same ones. Even of hostile families a part is common.

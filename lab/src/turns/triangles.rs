@@ -2,9 +2,18 @@
 
 use super::families::Case;
 use super::hunt::side;
+use nearmiss_kernels::abi::TurnRecord;
+use nearmiss_kernels::bvh::turns::swell_of;
 use nearmiss_kernels::math::Vec3;
-use nearmiss_kernels::prim::turning::Side;
+use nearmiss_kernels::math::turn::{Turn, bulge};
+use nearmiss_kernels::prim::cubic::Moving;
+use nearmiss_kernels::prim::direction::parted;
+use nearmiss_kernels::prim::sweep::{Corners, more};
 use nearmiss_kernels::prim::turning::apart::{Needed, open_by};
+use nearmiss_kernels::prim::turning::{Side, chords};
+
+/// All tests of two triangles.
+const TESTS: u32 = (1 << 15) - 1;
 
 /// Two triangles that have the features of a case, and the number of their test.
 pub struct Triangles {
@@ -23,6 +32,23 @@ fn completed(mut side: Side, count: usize, others: &Side) -> Side {
         side.points[k] = side.points[0].map(|point| point + by);
     }
     side
+}
+
+/// The corners of a side in the world at both ends of the step, and its swell.
+fn in_world(side: &Side) -> (Corners<f64>, f32) {
+    let turn = Turn::new(side.phi);
+    let corners = side
+        .points
+        .map(|[from, to]| Moving { t0: side.pivot[0] + from, t1: side.pivot[1] + turn.rotated(1.0, to) });
+    let of_body = TurnRecord {
+        turn: side.phi.0,
+        path: side.pivot.map(|at| at.0),
+        bulge: bulge(turn.angle()),
+        ..TurnRecord::default()
+    };
+    let record = if of_body.turns() { of_body } else { TurnRecord::default() };
+    let swell = swell_of(&record, corners.map(|corner| [corner.t0, corner.t1]));
+    (corners, swell)
 }
 
 impl Triangles {
@@ -50,7 +76,20 @@ impl Triangles {
     /// Whether the filter leaves the features out, within a gap.
     pub fn are_apart(&self, gap: f64, needed: &Needed) -> bool {
         let [a, b] = &self.sides;
-        let tests = (1 << 15) - 1;
-        open_by(a, b, gap, tests, needed) >> self.test & 1 == 0
+        open_by(a, b, gap, TESTS, needed) >> self.test & 1 == 0
+    }
+
+    /// Whether the filter by chords leaves the features out, within a gap, of any swells.
+    pub fn are_apart_by_chords(&self, gap: f64, needed: &chords::Needed) -> bool {
+        let [(a, of_a), (b, of_b)] = self.sides.each_ref().map(in_world);
+        let swell = f64::from(of_a) + f64::from(of_b);
+        let open = chords::open_by(&a, &b, (swell, gap), TESTS, (f64::INFINITY, needed));
+        open.is_some_and(|open| open >> self.test & 1 == 0)
+    }
+
+    /// Whether a direction parts the triangles, within a gap and a part of the swells.
+    pub fn are_parted(&self, gap: f64, part: f32) -> bool {
+        let [(a, of_a), (b, of_b)] = self.sides.each_ref().map(in_world);
+        parted(&a, &b, more::<f32>(gap) + part * (of_a + of_b), false)
     }
 }

@@ -3,10 +3,12 @@
 
 use super::hunt::{Found, Hunt};
 use nearmiss_kernels::abi::{
-    InstanceFrame, InstanceMotion, MeshRecord, MovingRelation, PoseRecord, Relation, TurnRecord,
+    InstanceFrame, InstanceMotion, MeshRecord, MovingRelation, PoseRecord, Relation, TileBox, TurnRecord,
 };
 use nearmiss_kernels::bv::Aabb;
 use nearmiss_kernels::bvh::relation::Related;
+use nearmiss_kernels::bvh::tile_box::{TilesApart, TilesApartInStep};
+use nearmiss_kernels::exec::RowMap;
 use nearmiss_kernels::math::turn::{Turn, after, exp};
 use nearmiss_kernels::math::{Vec3, rigid};
 use nearmiss_kernels::stage::fit::bodies::frame;
@@ -89,9 +91,15 @@ impl Moves {
     }
 }
 
+/// A tile that has this corner alone, with a box along these axes.
+fn tile(point: [f32; 3], axes: &[f64]) -> TileBox {
+    let axis = |at| part(axes, at).map(|x| x as f32);
+    TileBox::around(&[point], [axis(0), axis(3)])
+}
+
 /// Two bodies whose points are `gap` apart at a time: the slack, and how much of it the second's point
-/// needs in the frame of the first. Boxes hold it, and planes of triangles with these corners do not
-/// part them.
+/// needs in the frame of the first. Boxes hold it, and neither planes of triangles with these corners nor
+/// oriented boxes part them.
 fn needed(x: &[f64], [a_turns, b_turns]: [bool; 2], gap: f64) -> Option<(MovingRelation, f64)> {
     let a = Moves::new(&x[..OF_A_BODY], a_turns)?;
     let mut b = Moves::new(&x[OF_A_BODY..2 * OF_A_BODY], b_turns)?;
@@ -121,7 +129,15 @@ fn needed(x: &[f64], [a_turns, b_turns]: [bool; 2], gap: f64) -> Option<(MovingR
     };
     let row = MovingRelation::row(corners(a.point), relation.seen(&corners(b.point)).0);
     assert!(holds && !MovingRelation::are_apart(row, relation.slack()), "{x:?}: {relation:?}");
+    let tiles = tiles(x, [a.point, b.point]);
+    assert_eq!(TilesApartInStep { relation }.at_once(tiles), 0, "{x:?}: {relation:?}");
     Some((relation, most))
+}
+
+/// The tiles of the two points.
+fn tiles(x: &[f64], [a, b]: [Vec3<f64>; 2]) -> [TileBox; 2] {
+    let single = |v: Vec3<f64>| v.0.map(|x| x as f32);
+    [tile(single(a), &x[4..]), tile(single(b), &x[OF_A_BODY + 4..])]
 }
 
 /// The largest part of the slack that is needed, of motions with turns of that size.
@@ -179,6 +195,28 @@ fn a_slack_without_a_term_is_noticed() {
         }
     }
     assert!(lost[0] > 500 && lost[1] > 500, "{lost:?}");
+}
+
+/// Oriented boxes that are apart at one end only, and slacks that lack the terms of a step.
+#[test]
+fn oriented_boxes_of_less_than_a_step_are_noticed() {
+    use rand::SeedableRng;
+    let mut r = SmallRng::seed_from_u64(970);
+    let (mut at_start, mut at_end, mut without) = (0, 0, 0);
+    for _ in 0..4_000 {
+        let x: Vec<f64> = (0..2 * OF_A_BODY + 4).map(|_| r.random_range(-1.0..1.0)).collect();
+        let Some((relation, _)) = needed(&x, [true, true], 0.0) else { continue };
+        let [a, b] = [&x[..OF_A_BODY], &x[OF_A_BODY..]].map(|x| Moves::new(x, true));
+        let (Some(a), Some(b)) = (a, b) else { continue };
+        let tiles = tiles(&x, [a.point, b.point]);
+        let at = |relation: Relation| TilesApart { relation: Relation { slack: 1e-4, ..relation } };
+        at_start += at(relation.start).at_once(tiles);
+        at_end += at(relation.end).at_once(tiles);
+        let mut less = relation;
+        (less.start.slack, less.end.slack) = (1e-4, 1e-4);
+        without += TilesApartInStep { relation: less }.at_once(tiles);
+    }
+    assert!(at_start > 500 && at_end > 500 && without > 100, "{at_start} {at_end} {without}");
 }
 
 /// In a step without turns, and at rest, the slack is that of both ends.

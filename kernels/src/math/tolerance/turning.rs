@@ -69,7 +69,8 @@ pub const TURNING_NEAR: f64 = 1.0 / 1048576.0;
 /// cost, proves nothing.
 pub const TURNING_ACROSS: f64 = 128.0 * U64;
 /// Error of the difference of two heights in f32, relative to the longest difference of a corner from
-/// the origin and to the direction's length: `16u` of f32, of which `10u` are needed. Derived in `prim::turning::apart`. Ratio.
+/// the origin and to the direction's length: `16u` of f32, of which `14u` are needed. Derived in
+/// `prim::turning::heights`. Ratio.
 pub const TURNING_SINGLE: f32 = 16.0 * U32;
 /// Factor of what such a height must exceed, for the roundings of that: `1 + 16u` of f32. Ratio.
 pub const TURNING_SINGLE_UP: f32 = 1.0 + 16.0 * U32;

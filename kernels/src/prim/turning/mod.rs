@@ -17,7 +17,9 @@
 //! | [`ahead`] | a look for a certain contact of features that are near |
 //! | [`common`] | the common case: one contact, and planes before it |
 //! | [`solve`] | the walk through the step, turn by turn; `next` has the slices behind the first |
-//! | [`apart`] | before all that: features of two triangles that planes keep apart |
+//! | [`chords`] | before all that: features of two triangles that planes keep apart, of small turns |
+//! | [`apart`] | the same of all turns |
+//! | [`heights`] | planes of both |
 //!
 //! # Claims
 //!
@@ -52,7 +54,9 @@
 pub mod ahead;
 pub mod apart;
 pub mod certificate;
+pub mod chords;
 pub mod common;
+pub mod heights;
 pub mod motion;
 mod next;
 pub mod place;

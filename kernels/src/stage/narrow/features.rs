@@ -37,10 +37,10 @@ use super::expect;
 use crate::abi::{Facet, FeaturesArgs, Pair};
 use crate::bvh::course::{Course, Gap};
 use crate::bvh::horizon::Horizon;
-use crate::exec::{Block, Lane, RowMap, Shared, Slot, WARP};
+use crate::exec::{Block, Lane, RowMap, WARP};
 use crate::math::{Real, pick};
 use crate::prim::direction::parted;
-use crate::prim::sweep::MOST;
+use crate::queue::listing::{FeatureLists, Listing, listing_bytes};
 use crate::queue::waiting::{Waiting, waiting_bytes};
 use core::marker::PhantomData;
 
@@ -156,19 +156,11 @@ fn turned(p: &Facet, q: &Facet) -> Option<([u32; 3], [u32; 3], bool)> {
 /// Lanes of a block: one warp, whose barriers and numbering cost next to nothing.
 pub const LANES: u32 = WARP;
 
-/// Numbers of tests of a lane, with one to spare.
-const TESTS: u32 = 16;
-
 /// Bytes of shared memory of a block: pairs that wait, and a number of each test that is to be
 /// listed.
 pub const fn shared_bytes(lanes: u32) -> u32 {
-    2 * waiting_bytes(lanes) + 4 * MOST * lanes
+    2 * waiting_bytes(lanes) + listing_bytes(lanes)
 }
-
-/// Bits of [`owned`] that are vertices and faces.
-pub(super) const VERTICES: u32 = 63;
-/// Counts of both kinds in one word: at most 15 a lane, so blocks of up to 1,024 lanes fit 16 bits.
-const EE: u32 = 1 << 16;
 
 /// Two triangles of a pair.
 #[derive(Clone, Copy)]
@@ -288,23 +280,18 @@ fn owner<R: Real, L: Lane>(lane: &L, args: &FeaturesArgs<R>, i: u32, later: u64,
 /// The 15 tests of the pairs that wait.
 struct Tests<R, C, B: Block, const HORIZON: bool> {
     boxes: Meeting<R, C, HORIZON>,
-    /// Which lane's test each candidate is.
-    listed: Shared<u32>,
-    masks: B::Slot<u32>,
-    places: B::Slot<u32>,
+    listing: Listing<B>,
 }
 
 impl<R: Real, C: Course<R>, B: Block, const HORIZON: bool> Tests<R, C, B, HORIZON> {
     #[inline(always)]
     fn new(block: &mut B, boxes: Meeting<R, C, HORIZON>) -> Self {
-        let listed = block.shared::<u32>(MOST * block.lanes());
-        Tests { boxes, listed, masks: block.slot(0), places: block.slot(0) }
+        Tests { boxes, listing: Listing::new(block) }
     }
 
     /// Lists the candidates of `some` of the pairs that wait, from the one at `from`; one a lane.
     #[inline(always)]
     fn run(&mut self, block: &mut B, args: &FeaturesArgs<R>, waiting: &Waiting<B>, from: u32, some: u32) {
-        let (lanes, listed) = (block.lanes(), self.listed);
         let pair_of = |lane: &B::Lane, i: u32| waiting.get(lane, from + i);
         block.map_rows(
             &self.boxes,
@@ -312,57 +299,10 @@ impl<R: Real, C: Course<R>, B: Block, const HORIZON: bool> Tests<R, C, B, HORIZO
             |lane, two| Some(two.meeting::<R, C, _>(lane, args)),
             |lane, result| {
                 let mask = result.map_or(0, |(two, meeting)| owned(&two.p, &two.q) & meeting);
-                *self.masks.of(lane) = mask;
-                *self.places.of(lane) = (mask & VERTICES).count_ones() + EE * (mask & !VERTICES).count_ones();
-                lane.meet();
+                self.listing.set(lane, mask);
             },
         );
-        let total = block.scan(&mut self.places);
-        let (vf, ee) = (total % EE, total / EE);
-        let starts = block.reserve_both([args.vf.count(), args.ee.count()], [vf.into(), ee.into()]);
-        // Written by few lanes that have many, read by all.
-        block.phase(|lane| {
-            let (mut mask, before) = (*self.masks.of(lane), *self.places.of(lane));
-            let (mut next_vf, mut next_ee) = (before % EE, vf + before / EE);
-            while mask != 0 {
-                let k = mask.trailing_zeros();
-                mask &= mask - 1;
-                let next = if k < 6 { &mut next_vf } else { &mut next_ee };
-                lane.put(listed, *next, lane.lane() * TESTS + k);
-                *next += 1;
-            }
-            lane.meet();
-        });
-        block.phase(|lane| {
-            let facet = |triangle| lane.read(args.facets, triangle);
-            let mut i = lane.lane();
-            while i < vf + ee {
-                let test = lane.get(listed, i);
-                let (pair, k) = (pair_of(lane, test / TESTS), test % TESTS);
-                if i < vf {
-                    args.vf.put(lane, starts[0] + i as u64, vertex_and_face(facet, pair, k));
-                } else {
-                    let place = starts[1] + (i - vf) as u64;
-                    args.ee.put(lane, place, two_edges(facet, pair, k - 6));
-                }
-                i += lanes;
-            }
-            lane.meet();
-        });
+        let lists = FeatureLists { facets: args.facets, vf: args.vf, ee: args.ee };
+        self.listing.put(block, &lists, pair_of);
     }
-}
-
-/// Test 0 to 5: a vertex of the first triangle and the second, or the other way round.
-#[inline(always)]
-pub(super) fn vertex_and_face(facet: impl Fn(u32) -> Facet, pair: Pair, test: u32) -> Pair {
-    let (of, face, k) = if test < 3 { (pair.a, pair.b, test) } else { (pair.b, pair.a, test - 3) };
-    Pair { a: pick(facet(of).corners, k), b: face }
-}
-
-/// Test 6 to 14, less 6: an edge of each.
-#[inline(always)]
-pub(super) fn two_edges(facet: impl Fn(u32) -> Facet, pair: Pair, test: u32) -> Pair {
-    let edge = |of: u32, k: u32| pick(facet(of).edges, k);
-    let (x, y) = (edge(pair.a, test / 3), edge(pair.b, test % 3));
-    Pair { a: x.min(y), b: x.max(y) }
 }

@@ -32,7 +32,8 @@ pub const fn shared_bytes<V: Volume>() -> u32 {
     OnChip::bytes::<V>(SLOTS) + SLOTS * size_of::<Merge>() as u32 + 4 * MAX_LEVELS
 }
 
-/// All volumes.
+/// All volumes. Inlined, or the compiler may copy the arguments.
+#[inline(always)]
 pub fn treelets<R: Real, V: Volume, B: Block>(block: &mut B, args: &TreeletsArgs<R, V>) {
     // Each volume at its first leaf.
     let chip = OnChip::new::<V, B>(block, SLOTS);

@@ -6,15 +6,17 @@
 //! Writes   pairs of tiles, or pairs for the next level, in no order.
 //! Before   relations and pairs are listed. The children of a node are all tiles, or none is.
 //! After    tile_pairs ∪ next ⊇ {(c, d) : c below a, d below b, boxes overlap in both frames}, for
-//!          each (a, b) in pairs. A tile is below itself. [`nodes`]: so is a node above tiles, if the
-//!          other is higher; and tile_pairs has no tiles whose oriented boxes are apart.
+//!          each (a, b) in pairs. A tile is below itself. [`nodes`], [`moving_nodes`]: so is
+//!          a node above tiles, if the other is higher; and tile_pairs has no tiles whose oriented boxes
+//!          are apart.
 //!          A pair that is left out has no two triangles with a common point.
 //! Room     both lists may be too short: counters go on, the host grows them and runs again.
 //! Cost     32 B a node; a box in the other frame 50 operations. Those of one side that meet the
 //!          node of the other are rows, a vote each. [`nodes`]: 96 B from cache and 200 operations a
 //!          pair of tiles, in full warps ([`crate::bvh::tile_box`]).
 //!
-//! [`moving_nodes`] does the same for a step, by boxes around both ends: see [`crate::bvh::motion`].
+//! [`moving_nodes`] does the same for a step, by boxes around both ends, and by oriented boxes that are
+//! apart on one side at both: see [`crate::bvh::motion`].
 //!
 //! [`nodes_within`] keeps pairs whose gap is within the bound of their relation, see
 //! [`super::within`].
@@ -25,7 +27,7 @@ use crate::abi::{
 use crate::bvh::gap::CloseInBoth;
 use crate::bvh::pieces::Pieces;
 use crate::bvh::relation::{Both, Related};
-use crate::bvh::tile_box::{APART, TilesApart};
+use crate::bvh::tile_box::{APART, Oriented};
 use crate::bvh::tiles::TILE;
 use crate::exec::{Block, Lane, Own, PairTest, Shared, Slot};
 use bytemuck::Zeroable;
@@ -107,21 +109,6 @@ trait Descent<Q: Related, B: Block> {
     }
 }
 
-/// All pairs whose boxes overlap.
-struct All;
-
-impl<Q: Related, B: Block> Descent<Q, B> for All {
-    const IS_EVEN: bool = false;
-    #[inline(always)]
-    fn limit(&mut self, _: &mut B, _: u32, _: &Q) -> f32 {
-        0.0
-    }
-    #[inline(always)]
-    fn sift(&mut self, _: &mut B, _: &Q, _: [u32; 2], (_, fill): (Shared<[u32; 2]>, u32)) -> u32 {
-        fill
-    }
-}
-
 /// Pairs whose gap is within a bound.
 struct Within<'a> {
     args: &'a NodesWithinArgs,
@@ -141,23 +128,23 @@ impl<B: Block> Descent<Relation, B> for Within<'_> {
 }
 
 /// Pairs whose oriented boxes are not apart, of tiles.
-struct Oriented<'a, B: Block> {
+struct ByOrientedBoxes<'a, B: Block> {
     args: &'a NodesArgs,
     verdicts: B::Slot<Option<([u32; 2], u32)>>,
     tests: u64,
 }
 
-impl<B: Block> Descent<Relation, B> for Oriented<'_, B> {
+impl<Q: Oriented, B: Block> Descent<Q, B> for ByOrientedBoxes<'_, B> {
     const IS_EVEN: bool = true;
     #[inline(always)]
-    fn limit(&mut self, _: &mut B, _: u32, _: &Relation) -> f32 {
+    fn limit(&mut self, _: &mut B, _: u32, _: &Q) -> f32 {
         0.0
     }
     #[inline(always)]
     fn sift(
         &mut self,
         block: &mut B,
-        of: &Relation,
+        of: &Q,
         [a, b]: [u32; 2],
         (found, fill): (Shared<[u32; 2]>, u32),
     ) -> u32 {
@@ -166,7 +153,7 @@ impl<B: Block> Descent<Relation, B> for Oriented<'_, B> {
             return fill;
         }
         self.tests += fill as u64;
-        let map = TilesApart { relation: *of };
+        let map = of.tiles_apart();
         let (mut at, mut left) = (0, 0);
         while at < fill {
             block.map_rows(
@@ -199,13 +186,14 @@ impl<B: Block> Descent<Relation, B> for Oriented<'_, B> {
 
 /// Pairs of nodes below pairs.
 pub fn nodes<B: Block>(block: &mut B, args: &NodesArgs) {
-    let mut oriented = Oriented { args, verdicts: block.slot(None), tests: 0 };
-    descend::<Overlap, _, _, _>(block, args, args.relations, &mut oriented);
+    let mut descent = ByOrientedBoxes { args, verdicts: block.slot(None), tests: 0 };
+    descend::<Overlap, _, _, _>(block, args, args.relations, &mut descent);
 }
 
 /// Pairs of nodes below pairs of bodies in motion.
 pub fn moving_nodes<B: Block>(block: &mut B, args: &MovingNodesArgs) {
-    descend::<Overlap, _, _, _>(block, &args.of, args.relations, &mut All);
+    let mut descent = ByOrientedBoxes { args: &args.of, verdicts: block.slot(None), tests: 0 };
+    descend::<Overlap, _, _, _>(block, &args.of, args.relations, &mut descent);
 }
 
 /// Pairs of nodes below pairs that may hold the nearest pair of triangles.

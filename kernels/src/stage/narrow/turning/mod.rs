@@ -1,130 +1,36 @@
 //! # Turning: pairs of triangles of bodies that turn → proven contacts
 //! Paper    not in the paper. The motion is that of FCL's and parry's interpolations; the proof is
 //!          [`crate::prim::turning`].
-//! Launch   [`features()`] over the pairs, a warp a block, which leaves out features that planes
-//!          keep apart ([`crate::prim::turning::apart`]), and of bodies that turn far triangles in
-//!          balls that stay apart; then [`common`] over its lists with one slice, [`common`] over
-//!          what that leaves with all, and [`solve`] over the rest. Each has both kinds in one
+//! Launch   [`features`] first; then [`common`] over its lists with one slice, [`common`] over what
+//!          that leaves with all, and [`solve`] over the rest. Each has both kinds in one
 //!          launch: as many blocks of one warp as run at once. In `common` a lane has a pair; in
 //!          `solve` it takes the next one when its walk has ended. With a separation `solve` has all
 //!          pairs. Only in a step in which a body may turn.
-//! Reads    pairs, their features, bodies that turn, points at rest and vertices; tolerances of
-//!          bodies, if they differ.
+//! Reads    pairs of features, bodies that turn, points at rest and vertices; tolerances of bodies, if
+//!          they differ.
 //! Writes   contacts and undecided pairs with bounds of toi; or the earliest.
 //! Before   pairs are complete: volumes hold the paths, and all within a tolerance of them.
 //! After    {pairs that meet on their true paths} ⊆ listed; no time is late.
 //!          earliest = min {(toi, undecided) of each pair of the continuous query}: a walk ends if
 //!          all before a known time is clear. So the result is the same in any order.
 //! Room     pairs, hits, left: counted past the end, grown, run again.
-//! Cost     8 B pair, 160 B each of two bodies and 24 B a vertex (gathered). A pair of triangles
-//!          takes some 1,500 operations, half of them in f32; those that one window does not decide
-//!          take as many again, or four times as many if both turn by more than 3 degrees. A pair of
-//!          features: about 8 places and one slice in `common`, 6 slices and 17 places in `solve`.
+//! Cost     8 B pair, 160 B each of two bodies and 24 B a vertex (gathered). A pair: about 8 places
+//!          and one slice in `common`, 6 slices and 17 places in `solve`.
+
+pub mod features;
 
 use super::climb::{self, Tested, emit};
-use super::features::{VERTICES, owned, two_edges, vertex_and_face};
 use super::{of_edge_edge, of_vertex_face};
-use crate::abi::{
-    Listed, Pair, Point, Positions, RungArgs, Span, TurnRecord, TurningArgs, TurningFeaturesArgs, earliest,
-};
+use crate::abi::{Listed, Pair, Point, Positions, RungArgs, Span, TurnRecord, TurningArgs, earliest};
 use crate::bvh::turns::body_of;
-use crate::exec::{Block, Lane, Slot, WARP};
+use crate::exec::{Block, Lane, Slot};
 use crate::math::{Vec3, rigid};
-use crate::prim::balls::stay_apart;
 use crate::prim::inclusion::{Params, Verdict};
-use crate::prim::turning::apart::Course;
 use crate::prim::turning::{Motion, Side, Walk};
-use crate::queue::waiting::{Waiting, waiting_bytes};
 
-/// Lanes of a block of [`features()`]: one warp.
-pub const LANES: u32 = WARP;
 /// Turns that lanes take before those whose walks have ended take new pairs, at least. A pair of
 /// features takes some 20.
 const TURNS: u32 = 4;
-/// Bytes of shared memory of a block of [`features()`]: pairs that wait.
-pub const SHARED: u32 = waiting_bytes(LANES);
-
-/// The tests that the triangles of each pair own, unless the triangles or the features stay apart.
-/// Most pairs end in one window of the whole step. The others wait on chip until there is one a
-/// lane.
-#[inline(always)]
-pub fn features<B: Block>(block: &mut B, args: &TurningFeaturesArgs) {
-    let (count, lanes) = (args.pairs.listed(block), block.lanes());
-    let share = block.share(count, lanes);
-    let mut waiting = Waiting::new(block);
-    let mut base = share.first;
-    loop {
-        let is_end = base >= share.end;
-        block.phase(|lane| {
-            let i = base + lane.lane();
-            let pair = (!is_end && i < count).then(|| in_order(lane, args, args.pairs.get(lane, i)));
-            waiting.set(lane, pair.filter(|&pair| may_meet(lane, args, pair)));
-        });
-        waiting.add(block);
-        let (from, some) = waiting.take(block, is_end);
-        if some > 0 {
-            block.phase(|lane| {
-                if lane.lane() < some {
-                    list(lane, args, waiting.get(lane, from + lane.lane()));
-                }
-                lane.meet();
-            });
-        }
-        if is_end & waiting.is_empty() {
-            break;
-        }
-        base = if is_end { base } else { base + share.step };
-    }
-}
-
-/// Whether a pair owns a test, and its triangles do not stay apart for a reason that is quickly
-/// found.
-#[inline(always)]
-fn may_meet<L: Lane>(lane: &L, args: &TurningFeaturesArgs, pair: Pair) -> bool {
-    let [p, q] = [pair.a, pair.b].map(|triangle| lane.read(args.facets, triangle));
-    let tests = owned(&p, &q);
-    if tests == 0 {
-        return false;
-    }
-    let [a, b] = sides(lane, (&args.frames, args.rest), &p.corners, &q.corners);
-    match Course::new(&a, &b) {
-        Some(course) if course.turns_far() => !stay_apart(&a, &b, args.gap),
-        Some(course) => !course.are_apart(args.gap, tests),
-        None => true,
-    }
-}
-
-/// Lists those tests of a pair whose features may meet.
-#[inline(always)]
-fn list<L: Lane>(lane: &L, args: &TurningFeaturesArgs, pair: Pair) {
-    let facet = |triangle| lane.read(args.facets, triangle);
-    let (p, q) = (facet(pair.a), facet(pair.b));
-    let [a, b] = sides(lane, (&args.frames, args.rest), &p.corners, &q.corners);
-    let tests = owned(&p, &q);
-    let mut open = Course::new(&a, &b).map_or(tests, |course| course.open_in_halves(args.gap, tests));
-    while open != 0 {
-        let test = open.trailing_zeros();
-        open &= open - 1;
-        if VERTICES >> test & 1 == 1 {
-            args.vf.push(lane, vertex_and_face(facet, pair, test));
-        } else {
-            args.ee.push(lane, two_edges(facet, pair, test - 6));
-        }
-    }
-}
-
-/// The pair with the triangle that turns more first, or the one with the smaller number if both
-/// turn alike. In another order the last bits differ, and what is left with them.
-#[inline(always)]
-fn in_order<L: Lane>(lane: &L, args: &TurningFeaturesArgs, pair: Pair) -> Pair {
-    let square = |triangle| {
-        let body = body_of(lane, args.frames.turns, lane.read(args.facets, triangle).corners[0]);
-        body.map_or(0.0, |body| Vec3(body.turn).dot(Vec3(body.turn)))
-    };
-    let (a, b) = (square(pair.a), square(pair.b));
-    let is_first = a > b || (a == b && pair.a < pair.b);
-    if is_first { pair } else { Pair { a: pair.b, b: pair.a } }
-}
 
 /// The verdicts of both kinds in the common case; the other pairs are left.
 pub fn common<B: Block>(block: &mut B, args: &TurningArgs) {
@@ -189,9 +95,11 @@ fn walk_all<B: Block, const N: usize>(
     of: &Listed,
     begin: impl Fn(&B::Lane, Pair) -> (Motion<N>, Params),
 ) {
-    let (count, lanes) = (of.pairs.listed(block), block.lanes());
+    // Walks of few pairs are spread over all blocks: lanes of a warp that do not walk do not wait.
+    let count = of.pairs.listed(block);
+    let lanes = count.div_ceil(block.blocks()).max(1).min(block.lanes());
     let share = block.share(count, lanes);
-    // The first of as many pairs as there are lanes, of which one is number `k` of the block.
+    // The first of as many pairs as lanes that walk, of which one is number `k` of the block.
     let first = |k: u64| share.first as u64 + k / lanes as u64 * share.step as u64;
     let mut motions = block.slot(Motion::<N>::default());
     let mut walks = block.slot(Walk::<N>::NONE);
