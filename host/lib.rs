@@ -80,7 +80,7 @@ pub use nalgebra;
 
 pub use contacts::{Answer, Contact, Contacts, Rows};
 pub use detector::{Detector, plan};
-pub use device::{Device, Interrupt};
+pub use device::{Device, Interrupt, listen, listening};
 pub use error::Error;
 pub use mesh::Mesh;
 pub use query::{BodyDistances, BodyPairs, Continuous, Discrete, Distance, Earliest, Near, Query};

@@ -4,6 +4,7 @@
 //! busy machine wakes late costs nothing. Helpers wait actively for a moment after each launch,
 //! since most launches follow another, then they sleep.
 
+use crate::listen::listen;
 use crate::place;
 use crate::turns::to_its_end;
 use std::any::Any;
@@ -103,11 +104,7 @@ impl Crew {
     /// # Panics
     /// If a block does.
     pub fn run(&self, blocks: u32, block: &(dyn Fn(u32) + Sync)) {
-        // One block is not worth waking a thread.
-        if blocks <= 1 || self.threads == 1 {
-            return (0..blocks).for_each(block);
-        }
-        let blocks = u64::from(blocks);
+        let (alone, blocks) = (blocks <= 1 || self.threads == 1, u64::from(blocks));
         let job = Job {
             block,
             blocks,
@@ -117,15 +114,18 @@ impl Crew {
             panic: Mutex::new(None),
             launcher: thread::current(),
         };
+        // One block is not worth waking a thread.
+        if alone {
+            job.work();
+            return job.end();
+        }
         let at = NonNull::from(&job).cast::<Job<'static>>();
         self.shared.post(|state| state.jobs.push(Listed(at)));
         job.work();
         self.shared.lock().jobs.retain(|listed| listed.0 != at);
         // Helpers join with the lock, so there are no more of them.
         job.wait();
-        if let Some(panic) = job.panic.into_inner().unwrap_or_else(PoisonError::into_inner) {
-            resume_unwind(panic);
-        }
+        job.end();
     }
 }
 
@@ -209,7 +209,14 @@ impl Job<'_> {
         self.next.load(Relaxed) < self.blocks
     }
 
-    /// Runs blocks until none is left.
+    /// Passes on a panic of a block.
+    fn end(self) {
+        if let Some(panic) = self.panic.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            resume_unwind(panic);
+        }
+    }
+
+    /// Runs blocks until none is left. Behind each piece of them a thread listens, if it is to.
     fn work(&self) {
         let all = || {
             loop {
@@ -219,6 +226,7 @@ impl Job<'_> {
                 }
                 // Numbers of blocks are below 2^32.
                 (first..self.blocks.min(first + self.piece)).for_each(|block| (self.block)(block as u32));
+                listen();
             }
         };
         if let Err(panic) = to_its_end(all) {

@@ -1,6 +1,7 @@
 //! Interruption of work: a flag that any thread sets, and that work polls between blocks and
 //! phases.
 
+use crate::listen::listen;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering::Relaxed};
 
@@ -113,8 +114,9 @@ pub struct Looks<'a> {
 }
 
 impl<'a> Looks<'a> {
-    /// Polls for work that `interrupt` may end; `None` for no handle.
+    /// Polls for work that `interrupt` may end; `None` for no handle. This thread listens first.
     pub fn new(interrupt: Option<&'a Interrupt>) -> Looks<'a> {
+        listen();
         Looks { state: interrupt.map_or(&NEVER, |interrupt| &interrupt.0), ended: AtomicBool::new(false) }
     }
 

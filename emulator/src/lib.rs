@@ -10,6 +10,7 @@ mod engine;
 mod interrupt;
 mod kept;
 mod lane;
+mod listen;
 mod observer;
 mod order;
 mod place;
@@ -21,6 +22,7 @@ mod threads;
 mod turns;
 
 pub use interrupt::{Interrupt, Looks};
+pub use listen::{listen, listening};
 pub use order::Order;
 pub use sanitizer::{Fault, Place, Sanitizer};
 pub use threads::start_threads;

@@ -22,7 +22,7 @@ pub(crate) use ledger::Work;
 pub use marks::Event;
 #[doc(hidden)]
 pub use nearmiss_emulator as emulator;
-pub use nearmiss_emulator::Interrupt;
+pub use nearmiss_emulator::{Interrupt, listen, listening};
 pub(crate) use place::Place;
 pub(crate) use replay::{Marks, Replay};
 pub use shared::Owner;

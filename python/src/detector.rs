@@ -12,7 +12,7 @@ use crate::query::Query;
 use crate::scene::Body;
 use crate::thickness::thickness_of;
 use crate::turns::python;
-use nearmiss::Interrupt;
+use crate::watch::Calls;
 use nearmiss::research::DetectorExt;
 use nearmiss::scene::BodyId;
 use nearmiss::words::counted;
@@ -35,8 +35,8 @@ pub type Answered<'py> = PyResult<Bound<'py, PyAny>>;
 pub struct Detector {
     pub one: Mutex<Asked>,
     pub device: Py<Device>,
-    /// Ends its calls.
-    pub interrupt: Interrupt,
+    /// How its calls are run.
+    pub calls: Calls,
 }
 
 #[pymethods]
@@ -158,7 +158,7 @@ impl Detector {
     /// That call raises Interrupted, and the detector can be used again. Its motions were taken. On
     /// the main thread Ctrl-C does the same, and raises KeyboardInterrupt.
     fn interrupt(&self) {
-        self.interrupt.trigger();
+        self.calls.interrupt.trigger();
     }
 
     /// Add a body, and return its number.

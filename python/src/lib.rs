@@ -19,6 +19,7 @@ mod frame;
 mod geometry;
 mod grouped;
 mod host;
+mod inline;
 mod key;
 mod matrix;
 mod on_device;

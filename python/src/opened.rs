@@ -5,8 +5,7 @@ use crate::detector::Detector;
 use crate::device::Device;
 use crate::errors::raised;
 use crate::scene::{Scene, scene_of};
-use crate::watch::watched;
-use nearmiss::Interrupt;
+use crate::watch::{Calls, watched};
 use pyo3::prelude::*;
 use std::sync::Mutex;
 
@@ -33,15 +32,15 @@ impl Detector {
             None => py.get_type::<Device>().call0()?.cast_into::<Device>()?.unbind(),
         };
         let bodies = scene_of(scene)?;
-        let (turn, interrupt) = (&device.get().turn, Interrupt::new());
-        let on = device.get().device.clone().with_interrupt(&interrupt);
-        let detector = watched(py, &interrupt, |watch| {
+        let (turn, calls) = (&device.get().turn, Calls::new(device.get().device.is_gpu()));
+        let on = device.get().device.clone().with_interrupt(&calls.interrupt);
+        let detector = watched(py, &calls, |watch| {
             let _turn = watch.lock(turn)?;
             watch.begins();
             nearmiss::Detector::new(on, bodies)
         });
         let one = Mutex::new(Asked::new(detector?.map_err(raised)?, device.get().device.is_gpu()));
         take(scene)?;
-        Ok(Detector { one, device, interrupt })
+        Ok(Detector { one, device, calls })
     }
 }

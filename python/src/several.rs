@@ -17,10 +17,10 @@ use crate::query::{Query, queries_of};
 use crate::scene::{Body, scene_of};
 use crate::thickness::thickness_of;
 use crate::turns::python;
-use crate::watch::{self, Watch, watched};
+use crate::watch::{self, Calls, Watch, watched};
+use nearmiss::Error;
 use nearmiss::scene::BodyId;
 use nearmiss::words::counted;
-use nearmiss::{Error, Interrupt};
 use pyo3::prelude::*;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -39,7 +39,7 @@ pub struct MultiDetector {
     one: Mutex<Several>,
     devices: Vec<Py<Device>>,
     /// Ends its calls.
-    interrupt: Interrupt,
+    calls: Calls,
 }
 
 type Several = Asked<nearmiss::MultiDetector>;
@@ -75,7 +75,7 @@ impl MultiDetector {
 
     /// Works with the detector, in turn with all that share a device. A signal ends it.
     fn work<T: Send>(&self, py: Python<'_>, work: impl FnOnce(&mut Several) -> T + Send) -> PyResult<T> {
-        let done = watched(py, &self.interrupt, |watch| {
+        let done = watched(py, &self.calls, |watch| {
             let mut one = watch.lock(&self.one)?;
             let _turns = turns(&self.devices, watch)?;
             watch.begins();
@@ -114,7 +114,7 @@ impl MultiDetector {
 
     /// The same, with what is known of earlier calls.
     pub fn look_at<T: Send>(&self, py: Python<'_>, look: impl FnOnce(&Several) -> T + Send) -> PyResult<T> {
-        watch::look(py, &self.interrupt, &self.one, look)
+        watch::look(py, &self.calls, &self.one, look)
     }
 
     /// Runs a call that returns an answer.
@@ -150,10 +150,11 @@ impl MultiDetector {
     #[new]
     #[pyo3(signature = (scene, devices))]
     fn new(py: Python<'_>, scene: &Bound<'_, PyAny>, devices: Vec<Py<Device>>) -> PyResult<MultiDetector> {
-        let (all, interrupt) = (scene_of(scene)?, Interrupt::new());
-        let one = |device: &Py<Device>| device.get().device.clone().with_interrupt(&interrupt);
+        let is_gpu = devices.iter().any(|device| device.get().device.is_gpu());
+        let (all, calls) = (scene_of(scene)?, Calls::new(is_gpu));
+        let one = |device: &Py<Device>| device.get().device.clone().with_interrupt(&calls.interrupt);
         let on = devices.iter().map(one).collect();
-        let detector = watched(py, &interrupt, |watch| {
+        let detector = watched(py, &calls, |watch| {
             let _turns = turns(&devices, watch)?;
             watch.begins();
             nearmiss::MultiDetector::new(on, all)
@@ -161,7 +162,7 @@ impl MultiDetector {
         let detector = detector?.map_err(raised)?;
         take(scene)?;
         let one = Mutex::new(Several::new(detector, false));
-        Ok(MultiDetector { one, devices, interrupt })
+        Ok(MultiDetector { one, devices, calls })
     }
 
     /// Move bodies for the next queries: see Detector.update for the arguments.
@@ -287,7 +288,7 @@ impl MultiDetector {
 
     /// End the call of another thread or, if none runs, the next call: see Detector.interrupt.
     fn interrupt(&self) {
-        self.interrupt.trigger();
+        self.calls.interrupt.trigger();
     }
 
     /// Add a body, and return its number.

@@ -35,7 +35,7 @@ impl Detector {
     /// Works with the detector, in turn with all that share its device. A signal ends it.
     pub fn work<T: Send>(&self, py: Python<'_>, work: impl FnOnce(&mut Asked) -> T + Send) -> PyResult<T> {
         let turn = &self.device.get().turn;
-        let done = watched(py, &self.interrupt, |watch| {
+        let done = watched(py, &self.calls, |watch| {
             let mut one = watch.lock(&self.one)?;
             let _turn = watch.lock(turn)?;
             watch.begins();
@@ -110,7 +110,7 @@ impl Detector {
 
     /// The same, with what is known of earlier calls.
     pub fn look_at<T: Send>(&self, py: Python<'_>, look: impl FnOnce(&Asked) -> T + Send) -> PyResult<T> {
-        watch::look(py, &self.interrupt, &self.one, look)
+        watch::look(py, &self.calls, &self.one, look)
     }
 
     /// Never called while the interpreter is held: the lock's holder may wait for that. Called before

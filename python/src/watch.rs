@@ -1,21 +1,57 @@
-//! Work that a signal ends. Python handles signals on the main thread, so a frame runs on another
-//! thread, and the main thread waits for it.
+//! Work that a signal ends. Python handles signals on the main thread. So a call that may take long runs on
+//! another thread, and the main thread waits for it. A call that is likely to be short runs on the main
+//! thread, which looks for signals between launches: to wake another thread takes as long as the call.
 
 use crate::errors::raised;
+use crate::inline;
 use crate::worker;
-use nearmiss::{Error, Interrupt};
+use nearmiss::{Error, Interrupt, listen};
 use pyo3::prelude::*;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// How often signals are looked for.
-const PERIOD: Duration = Duration::from_millis(50);
+pub const PERIOD: Duration = Duration::from_millis(50);
 /// How often a lock is tried that another thread has.
 const TURN: Duration = Duration::from_millis(1);
+/// A call is likely to be short if the last ones took at most this. A cost: signals are heard in any case.
+const SHORT: Duration = Duration::from_millis(10);
+
+/// How a detector's calls are run.
+pub struct Calls {
+    /// Ends them.
+    pub interrupt: Interrupt,
+    /// Nanoseconds that one of the last took: the longest, and a quarter less for each behind it.
+    recent: AtomicU64,
+    is_gpu: bool,
+}
+
+impl Calls {
+    /// Calls of a detector on a GPU, or on none. A GPU's stay away from the main thread, whose current
+    /// context may be another library's.
+    pub fn new(is_gpu: bool) -> Calls {
+        // The first calls build.
+        let recent = AtomicU64::new(2 * nanoseconds(SHORT));
+        Calls { interrupt: Interrupt::new(), recent, is_gpu }
+    }
+
+    fn are_short(&self) -> bool {
+        !self.is_gpu && self.recent.load(Relaxed) <= nanoseconds(SHORT)
+    }
+
+    fn took(&self, time: Duration) {
+        let before = self.recent.load(Relaxed);
+        self.recent.store(nanoseconds(time).max(before - before / 4), Relaxed);
+    }
+}
+
+fn nanoseconds(time: Duration) -> u64 {
+    u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
+}
 
 /// State that work shares with the thread that waits for it.
 #[derive(Default)]
@@ -24,6 +60,10 @@ pub struct Watch {
     cancelled: AtomicBool,
     /// The work has all its locks: a trigger ends it, and no other thread's.
     begun: AtomicBool,
+    /// The work runs on the main thread.
+    is_inline: bool,
+    /// The locks of calls that a signal's handler is in the middle of, by their places.
+    beneath: Vec<usize>,
     over: Mutex<bool>,
     ends: Condvar,
 }
@@ -32,27 +72,50 @@ impl Watch {
     /// Waits for a lock, unless a signal comes.
     ///
     /// # Errors
-    /// [`Error::Interrupted`]; [`Error::Bug`] if an earlier call with it has ended in a fault.
+    /// [`Error::Interrupted`]; [`Error::Bug`] if an earlier call with it has ended in a fault;
+    /// [`Error::InvalidArgument`] if a call has it that a signal's handler is in the middle of.
     pub fn lock<'a, T>(&self, of: &'a Mutex<T>) -> Result<MutexGuard<'a, T>, Error> {
         loop {
+            if self.cancelled.load(Relaxed) {
+                return Err(Error::Interrupted);
+            }
             match of.try_lock() {
-                Ok(guard) => return Ok(guard),
+                Ok(guard) => {
+                    if self.is_inline {
+                        inline::holds(of);
+                    }
+                    return Ok(guard);
+                }
                 Err(TryLockError::Poisoned(_)) => {
                     return Err(Error::Bug {
                         what: "an earlier call ended in a fault; make another one".into(),
                     });
                 }
-                Err(TryLockError::WouldBlock) if self.cancelled.load(Relaxed) => {
-                    return Err(Error::Interrupted);
+                Err(TryLockError::WouldBlock) => {
+                    inline::check(of, &self.beneath)?;
+                    thread::sleep(TURN);
+                    listen();
                 }
-                Err(TryLockError::WouldBlock) => thread::sleep(TURN),
             }
         }
+    }
+
+    /// For work of the main thread, or on it.
+    pub fn new(is_inline: bool) -> Watch {
+        Watch { is_inline, beneath: inline::held(), ..Watch::default() }
     }
 
     /// The work has all locks that it needs.
     pub fn begins(&self) {
         self.begun.store(true, Relaxed);
+    }
+
+    /// A signal's handler has raised: ends the work.
+    pub fn cancel(&self, interrupt: &Interrupt) {
+        self.cancelled.store(true, Relaxed);
+        if self.begun.load(Relaxed) {
+            interrupt.trigger();
+        }
     }
 
     /// Whether the work is over, waiting for that a little.
@@ -85,32 +148,20 @@ pub fn is_main(py: Python<'_>) -> PyResult<bool> {
 ///
 /// # Errors
 /// The exception that a signal's handler raised.
-pub fn watched<T: Send>(
-    py: Python<'_>,
-    interrupt: &Interrupt,
-    work: impl FnOnce(&Watch) -> T + Send,
-) -> PyResult<T> {
-    let watch = Arc::new(Watch::default());
+pub fn watched<T: Send>(py: Python<'_>, calls: &Calls, work: impl FnOnce(&Watch) -> T + Send) -> PyResult<T> {
     if !is_main(py)? {
-        return caught(py, || work(&watch));
+        return caught(py, || work(&Watch::default()));
     }
-    let mut signal = None;
-    let wait = || {
-        while !py.detach(|| watch.is_over()) {
-            if signal.is_none()
-                && let Err(error) = py.check_signals()
-            {
-                signal = Some(error);
-                watch.cancelled.store(true, Relaxed);
-            }
-            if signal.is_some() && watch.begun.load(Relaxed) {
-                interrupt.trigger();
-            }
-        }
+    let interrupt = &calls.interrupt;
+    let work = |watch: &Watch| {
+        let start = Instant::now();
+        let done = work(watch);
+        calls.took(start.elapsed());
+        done
     };
-    let done = worker::run(&watch, || work(&watch), wait);
-    let done = done.map(|done| ended(py, || done)).transpose();
-    match (signal, done) {
+    let (signal, done) =
+        if calls.are_short() { inline::run(py, interrupt, work) } else { elsewhere(py, interrupt, work) };
+    match (signal, done.map(|done| ended(py, || done)).transpose()) {
         (Some(error), _) => {
             interrupt.clear();
             Err(error)
@@ -120,6 +171,33 @@ pub fn watched<T: Send>(
         (None, Ok(None)) => Err(raised(Error::Bug { what: "work that was not done".into() })),
         (None, Err(error)) => Err(error),
     }
+}
+
+/// The exception that a signal's handler raised, and the result of work or its panic.
+pub type Heard<T> = (Option<PyErr>, Option<thread::Result<T>>);
+
+/// Runs work on another thread, while this one waits for signals.
+fn elsewhere<T: Send>(
+    py: Python<'_>,
+    interrupt: &Interrupt,
+    work: impl FnOnce(&Watch) -> T + Send,
+) -> Heard<T> {
+    let watch = Arc::new(Watch::new(false));
+    let mut signal = None;
+    let wait = || {
+        while !py.detach(|| watch.is_over()) {
+            if signal.is_none()
+                && let Err(error) = py.check_signals()
+            {
+                signal = Some(error);
+            }
+            if signal.is_some() {
+                watch.cancel(interrupt);
+            }
+        }
+    };
+    let done = worker::run(&watch, || work(&watch), wait);
+    (signal, done)
 }
 
 /// Runs work on this thread.
@@ -145,7 +223,7 @@ fn said(panic: &(dyn Any + Send)) -> &str {
 /// The exception that a signal's handler raised.
 pub fn look<S: Send, T: Send>(
     py: Python<'_>,
-    interrupt: &Interrupt,
+    calls: &Calls,
     at: &Mutex<S>,
     look: impl FnOnce(&S) -> T + Send,
 ) -> PyResult<T> {
@@ -153,7 +231,7 @@ pub fn look<S: Send, T: Send>(
     if let Ok(held) = at.try_lock() {
         return Ok(look(&held));
     }
-    watched(py, interrupt, |watch| watch.lock(at).map(|held| look(&held)))?.map_err(raised)
+    watched(py, calls, |watch| watch.lock(at).map(|held| look(&held)))?.map_err(raised)
 }
 
 /// Runs work that nothing ends. A signal leaves it behind: it goes on by itself, and what it comes

@@ -59,6 +59,75 @@ def test_a_signal_ends_a_frame(threads):
     assert len(detector.continuous()) == len(nm.Detector(nm.Body(V, F), device=detector.device).continuous())
 
 
+def quick(detector):
+    """Short calls: the next one is expected to be short, and runs on the main thread."""
+    for _ in range(30):
+        detector.discrete()
+
+
+def long_frame(detector):
+    """A frame of a detector of two triangles that takes long."""
+    number = detector.add(nm.Body(*LONG))
+    return lambda: detector.step({number: (LONG[0], LONG[0] + np.float32(0.25))}, nm.Continuous())
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_signal_ends_a_frame_that_was_expected_to_be_short(threads):
+    detector = nm.Detector(nm.Body(V, F), device=nm.Device("cpu", threads=threads))
+    quick(detector)
+    want = detector.discrete()
+    frame = long_frame(detector)
+    interrupted(frame)
+    detector.remove(1)
+    assert np.array_equal(detector.discrete().triangles, want.triangles)
+
+
+def test_a_handler_that_calls_in_the_middle_of_a_short_call_is_refused():
+    device = nm.Device("cpu", threads=1)
+    detector, other, new = (nm.Detector(nm.Body(V, F), device=device) for _ in range(3))
+    elsewhere = nm.Detector(nm.Body(V, F), device=nm.Device("cpu", threads=1))
+    quick(detector)
+    quick(other)
+    frame = long_frame(detector)
+    told, answers = [], []
+
+    def handler(*_):
+        # Calls of the last one are not known to be short: they run on another thread.
+        for same in detector, other, new:
+            with pytest.raises(nm.InvalidArgumentError, match="handler called a detector.* call later") as error:
+                same.discrete()
+            told.append(error)
+        answers.append(len(elsewhere.discrete()))
+        raise TimeoutError
+
+    before = signal.signal(signal.SIGALRM, handler)
+    signal.setitimer(signal.ITIMER_REAL, 0.2)
+    try:
+        with pytest.raises(TimeoutError):
+            frame()
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    assert len(told) == 3 and answers == [1]
+    assert [len(each.discrete()) for each in (other, new)] == [1, 1]
+
+
+def test_a_handler_that_does_not_raise_lets_a_short_call_go_on():
+    detector = nm.Detector(nm.Body(V, F), device=nm.Device("cpu", threads=1))
+    quick(detector)
+    number = detector.add(nm.Body(*soup(4000, 3, 0.5)))
+    calls = []
+    before = signal.signal(signal.SIGALRM, lambda *_: calls.append(time.monotonic()))
+    signal.setitimer(signal.ITIMER_REAL, 0.02, 0.02)
+    try:
+        answer = detector.continuous()
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    assert calls and len(answer) == len(detector.continuous())
+    detector.remove(number)
+
+
 @pytest.mark.parametrize(
     "call",
     [
