@@ -5,8 +5,9 @@ use crate::dlpack::{CPU, CUDA, Dtype, FLOAT, INT, Place, Shape, UINT, capsule};
 use crate::errors::{choice, raised};
 use crate::host::rows;
 use crate::several::MultiDetector;
-use nearmiss::Device;
+use crate::watch::Watch;
 use nearmiss::contacts::{self, Entries};
+use nearmiss::{Device, Error};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyTuple};
@@ -38,17 +39,22 @@ impl Owner {
     }
 
     /// Does something with the devices, in turn with all that share them.
-    fn in_turn<T: Send>(&self, py: Python<'_>, work: impl FnOnce() -> T + Send) -> T {
-        py.detach(|| match self {
+    fn in_turn<T>(&self, py: Python<'_>, work: impl FnOnce() -> Result<T, Error> + Send) -> PyResult<T>
+    where
+        T: Send,
+    {
+        let watch = Watch::new(false);
+        let done = py.detach(|| match self {
             Owner::One(own) => {
-                let _turn = own.get().device.get().turn();
+                let _turn = watch.lock(&own.get().device.get().turn)?;
                 work()
             }
             Owner::Several(own) => {
-                let _turns = own.get().turns();
+                let _turns = own.get().turns(&watch)?;
                 work()
             }
-        })
+        });
+        done.map_err(raised)
     }
 
     fn clone_ref(&self, py: Python<'_>) -> Owner {
@@ -133,7 +139,7 @@ impl DeviceArray {
         // -1: no order is needed.
         if stream != Some(ours.max(1) as i64) && stream != Some(-1) {
             let wait = || self.device.event()?.to(&self.device.event()?);
-            self.owner.in_turn(py, wait).map_err(raised)?;
+            self.owner.in_turn(py, wait)?;
         }
         capsule(py, &self.shape, self.owner.clone_ref(py).into_any())
     }

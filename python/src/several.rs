@@ -22,7 +22,7 @@ use nearmiss::Error;
 use nearmiss::scene::BodyId;
 use nearmiss::words::counted;
 use pyo3::prelude::*;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard};
 
 /// Scene on several devices of one host, which divide the work of each query.
 ///
@@ -85,9 +85,11 @@ impl MultiDetector {
     }
 
     /// Waits for the turn of each device. Never called while the interpreter is held.
-    pub fn turns(&self) -> Vec<MutexGuard<'_, ()>> {
-        let locks = locks(&self.devices).into_iter();
-        locks.map(|lock| lock.lock().unwrap_or_else(PoisonError::into_inner)).collect()
+    ///
+    /// # Errors
+    /// As [`Watch::lock`].
+    pub fn turns(&self, watch: &Watch) -> Result<Vec<MutexGuard<'_, ()>>, Error> {
+        turns(&self.devices, watch)
     }
 
     /// Works with an answer of this detector, while bodies are where it found them.
