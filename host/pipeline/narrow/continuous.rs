@@ -223,7 +223,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
                 let known = self.known(given.is_sample);
                 let numbers = (gap.map_or(0.0, Certified::listed_within), known);
                 let thick = (self.solver.certified(), 2.0 * self.rungs.largest_radius());
-                let pairs = self.turning.divide(given, thick)?;
+                let pairs = self.turning.divide(given, thick, self.earliest.is_some())?;
                 if let Some(thin) = &self.thin {
                     let thick = thin.divide(given, pairs)?;
                     given.features.run::<R, R::ThickFeatures>(given, thick, numbers)?;

@@ -48,8 +48,6 @@ pub struct Turning {
     left: [List<Pair>; 2],
     /// Those of them that take the walk.
     walks: [List<Pair>; 2],
-    /// Only the earliest time is wanted. Then how many pairs are left depends on when it is known.
-    is_earliest: bool,
 }
 
 impl Turning {
@@ -70,13 +68,7 @@ impl Turning {
             kept: None,
             left: lists(device, LEFT, [0, 0])?,
             walks: lists(device, WALKS, [0, 0])?,
-            is_earliest: false,
         })
-    }
-
-    /// The same, for the earliest time alone.
-    pub fn for_earliest(self) -> Self {
-        Turning { is_earliest: true, ..self }
     }
 
     /// Drops pairs of features that are excluded.
@@ -113,14 +105,15 @@ impl Turning {
     }
 
     /// Makes room. All candidates may go straight: the next step may have other bodies that turn. If
-    /// only the earliest time is wanted, all pairs of features may be left.
-    fn reserve<R: Precision>(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
+    /// only the earliest time is wanted, all pairs of features may be left: how many are depends on when
+    /// it is known.
+    fn reserve<R: Precision>(&mut self, given: &NarrowContext<R>, is_earliest: bool) -> Result<(), Error> {
         self.straight.reserve(given.device, given.pairs.room() as usize)?;
         for list in [&mut self.turning, &mut self.far].into_iter().chain(&mut self.candidates) {
             list.reserve(given.device, FEW)?;
         }
         for (kind, candidates) in self.candidates.iter().enumerate() {
-            let room = if self.is_earliest { candidates.capacity() } else { FEW };
+            let room = if is_earliest { candidates.capacity() } else { FEW };
             self.left[kind].reserve(given.device, room)?;
             self.walks[kind].reserve(given.device, room)?;
         }
@@ -137,12 +130,13 @@ impl Turning {
         &mut self,
         given: &NarrowContext<R>,
         (certified, radii): (Option<&Certified>, f64),
+        is_earliest: bool,
     ) -> Result<Output<Pair>, Error> {
         let Some(certified) = certified.filter(|_| !given.frames.turns.is_empty()) else {
             return Ok(given.pairs);
         };
         if given.may_grow {
-            self.reserve(given)?;
+            self.reserve(given, is_earliest)?;
         }
         let [straight, turning] = [&self.straight, &self.turning].map(|list| list.output(given.counters));
         let (frames, rest) = R::in_f64(given.frames, given.rest);

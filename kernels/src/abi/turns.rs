@@ -40,9 +40,9 @@ pub struct TurnRecord {
     pub end: u32,
     /// Its first vertex among the points at rest.
     pub rest: u32,
-    /// Of the vertices of all records there are as many equal stretches as records. This is the record
-    /// that has the first vertex of the one with this record's number, or the last before it. So few
-    /// records may have a vertex.
+    /// A record's number. All vertices are divided into as many equal stretches as there are records.
+    /// The first vertex of the stretch with this record's number is in that record, or behind it. So few
+    /// records are looked at to find the one of a vertex.
     pub holder: u32,
     /// The rotation at the start: a quaternion of length 1.
     pub rotation: [f64; 4],

@@ -142,60 +142,38 @@ fn are_apart<const N: usize>(places: [&Relation; N], [a, b]: [&TileBox; 2], leas
     any(sides[0]) | any(sides[1])
 }
 
-/// Whether the oriented boxes of two tiles are certainly apart.
-pub struct TilesApart {
-    /// The relation of the bodies.
-    pub relation: Relation,
-}
-
-impl RowMap for TilesApart {
-    type Number = f32;
-    type Row = [TileBox; 2];
-    #[inline(always)]
-    fn at_once(&self, [a, b]: [TileBox; 2]) -> u32 {
-        let least = TILE_SLACK * self.relation.slack;
-        if are_apart([&self.relation], [&a, &b], least) { APART } else { 0 }
-    }
-}
-
-/// Whether they are certainly apart for the whole step.
-pub struct TilesApartInStep {
-    /// The relation of the bodies.
-    pub relation: MovingRelation,
-}
-
-impl RowMap for TilesApartInStep {
-    type Number = f32;
-    type Row = [TileBox; 2];
-    #[inline(always)]
-    fn at_once(&self, [a, b]: [TileBox; 2]) -> u32 {
-        let MovingRelation { start, end } = &self.relation;
-        let least = TILE_SLACK * self.relation.slack();
-        if are_apart([start, end], [&a, &b], least) { APART } else { 0 }
-    }
-}
-
 /// Two bodies whose tiles have oriented boxes.
 pub trait Oriented: Related {
-    /// The test of two tiles.
-    type Apart: RowMap<Row = [TileBox; 2]>;
-    /// It.
-    fn tiles_apart(&self) -> Self::Apart;
+    /// Whether two boxes are certainly apart, at rest or for the whole step.
+    fn are_tiles_apart(&self, boxes: [&TileBox; 2]) -> bool;
 }
 
 impl Oriented for Relation {
-    type Apart = TilesApart;
     #[inline(always)]
-    fn tiles_apart(&self) -> TilesApart {
-        TilesApart { relation: *self }
+    fn are_tiles_apart(&self, boxes: [&TileBox; 2]) -> bool {
+        are_apart([self], boxes, TILE_SLACK * self.slack)
     }
 }
 
 impl Oriented for MovingRelation {
-    type Apart = TilesApartInStep;
     #[inline(always)]
-    fn tiles_apart(&self) -> TilesApartInStep {
-        TilesApartInStep { relation: *self }
+    fn are_tiles_apart(&self, boxes: [&TileBox; 2]) -> bool {
+        are_apart([&self.start, &self.end], boxes, TILE_SLACK * self.slack())
+    }
+}
+
+/// Whether the oriented boxes of two tiles are certainly apart: [`APART`], or 0.
+pub struct TilesApart<Q> {
+    /// The relation of the bodies.
+    pub relation: Q,
+}
+
+impl<Q: Oriented> RowMap for TilesApart<Q> {
+    type Number = f32;
+    type Row = [TileBox; 2];
+    #[inline(always)]
+    fn at_once(&self, [a, b]: [TileBox; 2]) -> u32 {
+        if self.relation.are_tiles_apart([&a, &b]) { APART } else { 0 }
     }
 }
 

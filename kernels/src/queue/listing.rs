@@ -17,7 +17,7 @@ pub const fn listing_bytes(lanes: u32) -> u32 {
     4 * MOST * lanes
 }
 
-/// What is listed, and where.
+/// The lists of both kinds, and the triangles that they are of.
 pub struct FeatureLists {
     /// Every triangle's vertices and edges.
     pub facets: Span<Facet>,

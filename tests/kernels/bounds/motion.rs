@@ -7,7 +7,7 @@ use nearmiss_kernels::abi::{
 };
 use nearmiss_kernels::bv::Aabb;
 use nearmiss_kernels::bvh::relation::Related;
-use nearmiss_kernels::bvh::tile_box::{TilesApart, TilesApartInStep};
+use nearmiss_kernels::bvh::tile_box::TilesApart;
 use nearmiss_kernels::exec::RowMap;
 use nearmiss_kernels::math::turn::{Turn, after, exp};
 use nearmiss_kernels::math::{Vec3, rigid};
@@ -130,7 +130,7 @@ fn needed(x: &[f64], [a_turns, b_turns]: [bool; 2], gap: f64) -> Option<(MovingR
     let row = MovingRelation::row(corners(a.point), relation.seen(&corners(b.point)).0);
     assert!(holds && !MovingRelation::are_apart(row, relation.slack()), "{x:?}: {relation:?}");
     let tiles = tiles(x, [a.point, b.point]);
-    assert_eq!(TilesApartInStep { relation }.at_once(tiles), 0, "{x:?}: {relation:?}");
+    assert_eq!(TilesApart { relation }.at_once(tiles), 0, "{x:?}: {relation:?}");
     Some((relation, most))
 }
 
@@ -214,7 +214,7 @@ fn oriented_boxes_of_less_than_a_step_are_noticed() {
         at_end += at(relation.end).at_once(tiles);
         let mut less = relation;
         (less.start.slack, less.end.slack) = (1e-4, 1e-4);
-        without += TilesApartInStep { relation: less }.at_once(tiles);
+        without += TilesApart { relation: less }.at_once(tiles);
     }
     assert!(at_start > 500 && at_end > 500 && without > 100, "{at_start} {at_end} {without}");
 }

@@ -53,7 +53,6 @@ impl ContinuousNarrow {
         let narrow = ContinuousNarrow::in_scene(device, (solver, layout), capacities)?;
         Ok(ContinuousNarrow {
             earliest: Some(device.of(purpose::EARLIEST).buffer(earliest::WORDS as usize)?),
-            turning: narrow.turning.for_earliest(),
             ..narrow
         })
     }

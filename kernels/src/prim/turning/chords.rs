@@ -36,9 +36,9 @@ const MOST: f64 = f64::from_bits((1023 + 60) << 52);
 /// The part of each term that is needed: tests make it less.
 #[derive(Clone, Copy, Debug)]
 pub struct Needed {
-    /// Of both swells.
+    /// The part of both swells.
     pub swell: f64,
-    /// Of the error of heights.
+    /// The part of the error of heights.
     pub height: f32,
 }
 

@@ -98,7 +98,7 @@ fn parted(signs: u32) -> u32 {
 pub struct Window {
     from: Corners,
     to: Corners,
-    /// What a height must exceed, for a direction of length 1.
+    /// A height must exceed this, for a direction of length 1.
     needs: f32,
 }
 

@@ -27,7 +27,7 @@ use crate::abi::{
 use crate::bvh::gap::CloseInBoth;
 use crate::bvh::pieces::Pieces;
 use crate::bvh::relation::{Both, Related};
-use crate::bvh::tile_box::{APART, Oriented};
+use crate::bvh::tile_box::{APART, Oriented, TilesApart};
 use crate::bvh::tiles::TILE;
 use crate::exec::{Block, Lane, Own, PairTest, Shared, Slot};
 use bytemuck::Zeroable;
@@ -153,7 +153,7 @@ impl<Q: Oriented, B: Block> Descent<Q, B> for ByOrientedBoxes<'_, B> {
             return fill;
         }
         self.tests += fill as u64;
-        let map = of.tiles_apart();
+        let map = TilesApart { relation: *of };
         let (mut at, mut left) = (0, 0);
         while at < fill {
             block.map_rows(
