@@ -515,7 +515,7 @@ typedef struct {
 
 // A rigid motion of the points of a body's mesh: a rotation, then a translation.
 typedef struct {
-    // A unit quaternion: x, y, z, w. Its length may differ from 1 by up to 1.2e-4 (2^-13); it is
+    // A unit quaternion: x, y, z, w. Its length may differ from 1 by up to 1.19e-4; it is
     // normalised.
     double rotation[4];
     // Added after the rotation, in the unit of the positions.
@@ -1384,7 +1384,7 @@ void nearmiss_interrupt_free(NearmissInterrupt *interrupt);
 
 // The pose of a matrix of 16 doubles, row by row: a rotation and, in the last column, a
 // translation. The last row is 0 0 0 1. Columns may be off unit length, and scalar products of two
-// of them off 0, by up to 1.2e-4; the nearest rotation is taken.
+// of them off 0, by up to 1.19e-4; the nearest rotation is taken.
 //
 // Fails with `NEARMISS_INPUT` for a number that is not finite, another last row, scale, shear and a
 // mirror image. The message names the number.

@@ -8,7 +8,7 @@ use std::mem::MaybeUninit;
 
 /// The pose of a matrix of 16 doubles, row by row: a rotation and, in the last column, a
 /// translation. The last row is 0 0 0 1. Columns may be off unit length, and scalar products of two
-/// of them off 0, by up to 1.2e-4; the nearest rotation is taken.
+/// of them off 0, by up to 1.19e-4; the nearest rotation is taken.
 ///
 /// Fails with `NEARMISS_INPUT` for a number that is not finite, another last row, scale, shear and a
 /// mirror image. The message names the number.

@@ -34,7 +34,7 @@ pub enum NearmissMotionKind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct NearmissPose {
-    /// A unit quaternion: x, y, z, w. Its length may differ from 1 by up to 1.2e-4 (2^-13); it is
+    /// A unit quaternion: x, y, z, w. Its length may differ from 1 by up to 1.19e-4; it is
     /// normalised.
     pub rotation: [f64; 4],
     /// Added after the rotation, in the unit of the positions.

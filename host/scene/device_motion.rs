@@ -162,7 +162,7 @@ impl DeviceRows {
 pub struct DevicePose {
     /// One row: the translation.
     pub translation: DeviceRows,
-    /// One row: a unit quaternion x, y, z, w. It may be off unit length by at most 1.2e-4 and is
+    /// One row: a unit quaternion x, y, z, w. It may be off unit length by at most 1.19e-4 and is
     /// normalised, as [`Pose::rotation`](super::Pose::rotation).
     pub rotation: DeviceRows,
 }

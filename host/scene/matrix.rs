@@ -10,7 +10,7 @@ impl Pose {
     /// Returns the pose of a row-major matrix: `R` and, in the last column, the translation. The
     /// last row is 0 0 0 1.
     ///
-    /// `R` must be a rotation: its columns may be off unit length by up to 1.2e-4, and so may the
+    /// `R` must be a rotation: its columns may be off unit length by up to 1.19e-4, and so may the
     /// scalar products of two of them be off 0. The nearest rotation is taken. A matrix in single
     /// precision is off by 1e-7.
     ///

@@ -26,7 +26,7 @@ use nearmiss_kernels::stage::place::moved;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Unit quaternion: x, y, z, w. It may be off unit length by up to 2^-13, 1.2e-4, and is then
+    /// Unit quaternion: x, y, z, w. It may be off unit length by up to 1.19e-4, and is then
     /// normalised. A quaternion rounded to f32 is off by 1e-7. One that is farther off is refused.
     pub rotation: [f64; 4],
     /// Translation, in scene units.

@@ -14,7 +14,7 @@ use pyo3::types::{PyDict, PyTuple};
 /// Pose of a rigid body: rotation, then translation.
 ///
 /// - `rotation`: unit quaternion (x, y, z, w), default (0, 0, 0, 1). Its length may differ from 1 by
-///   1.2e-4 (2^-13); it is normalised.
+///   1.19e-4; it is normalised.
 /// - `translation`: (x, y, z) in the unit of the vertices, default (0, 0, 0).
 ///
 /// A vertex v is placed at R v + t in float64, also of a mesh in float32. Both may be arrays of a
@@ -66,7 +66,7 @@ impl Pose {
     /// Return the pose of a matrix, (4, 4) numbers, or (3, 4) without the last row.
     ///
     /// The translation is in the last column. The last row is 0, 0, 0, 1. Columns of the rotation may
-    /// be off unit length, and scalar products of two of them off 0, by up to 1.2e-4. The nearest
+    /// be off unit length, and scalar products of two of them off 0, by up to 1.19e-4. The nearest
     /// rotation is taken. Raises InputError for a number that is not finite, another last row, scale,
     /// shear and a mirror image. The message names the number.
     #[staticmethod]

@@ -32,7 +32,7 @@ impl Detector {
     /// - `approaching`: features within `min_separation` at the start are in contact from when they
     ///   come nearer than there.
     ///
-    /// Raises InvalidArgumentError if the last update gave no body two ends.
+    /// Raises InvalidArgumentError if the last update named bodies, and none got two ends.
     #[pyo3(signature = (*, tolerance = None, min_separation = 0.0, max_iterations = None, assume_free = false, approaching = false))]
     #[allow(clippy::too_many_arguments, reason = "named arguments of Python")]
     fn continuous<'py>(
@@ -57,7 +57,7 @@ impl Detector {
     /// - `approaching`: features within `min_separation` at the start are in contact from when they
     ///   come nearer than there.
     ///
-    /// Raises InvalidArgumentError if the last update gave no body two ends.
+    /// Raises InvalidArgumentError if the last update named bodies, and none got two ends.
     #[pyo3(signature = (*, tolerance = None, min_separation = 0.0, max_iterations = None, assume_free = false, approaching = false))]
     #[allow(clippy::too_many_arguments, reason = "named arguments of Python")]
     fn earliest<'py>(
