@@ -2,7 +2,7 @@
 
 use crate::dlpack::{CPU, CUDA, CUDA_MANAGED, Dtype, FLOAT, Place, Shape, Taken, packed};
 use crate::errors::{choice, raised};
-use crate::host::are_floats;
+use crate::host::{are_floats, refuse_masked};
 use nearmiss::Device;
 use nearmiss::scene::{DeviceRows, Number};
 use numpy::npyffi::_PyArray_GET_ITEM_DATA;
@@ -104,6 +104,10 @@ pub fn on_gpu(
 /// laid out for that.
 pub fn on_cpu(object: &Bound<'_, PyAny>, (width, what): (usize, &str)) -> PyResult<Option<BorrowedRows>> {
     let array = if let Ok(array) = object.cast::<PyUntypedArray>() {
+        // It may be of a subclass.
+        if !array.is_exact_instance_of::<PyUntypedArray>() {
+            refuse_masked(array)?;
+        }
         array.clone()
     } else if object.hasattr("__dlpack__")? {
         object.py().import("numpy")?.call_method1("from_dlpack", (object,))?.cast_into::<PyUntypedArray>()?

@@ -67,14 +67,21 @@ pub fn rows<'py, T: Element + Copy + bytemuck::Pod, const N: usize>(
     flat.reshape([rows.len(), N]).expect("rows of equal length")
 }
 
-/// As an array of numpy whose numbers are aligned: itself if it is one, without a copy where its maker allows that.
-pub fn asarray<'py>(object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyUntypedArray>> {
-    let numpy = object.py().import("numpy")?;
-    if object.is_instance(&numpy.getattr("ma")?.getattr("MaskedArray")?)?
-        && numpy.getattr("ma")?.call_method1("is_masked", (object,))?.is_truthy()?
+/// Refuses an array of numpy with masked numbers: they are none.
+pub fn refuse_masked(object: &Bound<'_, PyAny>) -> PyResult<()> {
+    let masked = object.py().import("numpy")?.getattr("ma")?;
+    if object.is_instance(&masked.getattr("MaskedArray")?)?
+        && masked.call_method1("is_masked", (object,))?.is_truthy()?
     {
         return Err(choice("array has masked numbers", "fill them, or give the rows without them"));
     }
+    Ok(())
+}
+
+/// As an array of numpy whose numbers are aligned: itself if it is one, without a copy where its maker allows that.
+pub fn asarray<'py>(object: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyUntypedArray>> {
+    refuse_masked(object)?;
+    let numpy = object.py().import("numpy")?;
     let made = numpy.call_method1("require", (object, object.py().None(), "A"))?;
     Ok(made.cast_into::<PyUntypedArray>()?)
 }

@@ -298,6 +298,19 @@ def test_what_would_be_lost_in_silence_is_refused():
     with pytest.raises(nm.InvalidArgumentError, match="masked numbers"):
         nm.Body(masked, faces)
     assert nm.Body(np.ma.masked_array(corners), faces).vertex_count == 3
+    # Arrays that are read in place, too.
+    soft, hard = nm.Body(corners, faces), nm.Body(corners + 5, faces, kind="rigid")
+    detector = nm.Detector(nm.Scene(soft, hard))
+    places, turns = np.ma.masked_array([[0.0, 0.0, 2.0]], mask=True), np.array([[0.0, 0.0, 0.0, 1.0]])
+    for call in (
+        lambda: detector.update({0: masked}),
+        lambda: detector.update({0: (masked, masked)}),
+        lambda: detector.update_poses([1], places, turns),
+        lambda: detector.prepare_poses([1], places, turns, [nm.Discrete()]),
+    ):
+        with pytest.raises(nm.InvalidArgumentError, match="masked numbers"):
+            call()
+    detector.update({0: np.ma.masked_array(corners)})
     with pytest.raises(nm.InvalidArgumentError, match="group is 0"):
         nm.Body(corners, faces, group=0)
     detector = nm.Detector(nm.Body(corners, faces), device=nm.Device("cpu"))
