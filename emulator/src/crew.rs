@@ -18,7 +18,7 @@ use std::thread::{self, Thread};
 const LOOKS: u32 = 1000;
 /// Pieces of a launch for each thread at least, if it has as many blocks: the last one ends soon after
 /// the others.
-const PIECES: u64 = 64;
+const PIECES: u64 = 32;
 
 /// The threads of an engine.
 pub struct Crew {

@@ -230,7 +230,7 @@ impl Device {
     /// the kernel strides over the remaining items.
     pub fn blocks_striding<E: Entry>(&self, room: usize) -> u32 {
         let full = match &*self.machine {
-            Machine::Emulator(e) => 64 * e.threads() as u32,
+            Machine::Emulator(e) => 32 * e.threads() as u32,
             #[cfg(feature = "cuda")]
             Machine::Cuda(c) => c.resident_blocks(E::LANES),
         };
