@@ -2,6 +2,7 @@
 //! far.
 
 use super::layouts::Layouts;
+use crate::contacts::NearestTriangles;
 use crate::device::{Device, Work};
 use crate::error::Error;
 use crate::mesh::{MAX_FACES, MAX_VERTICES, Problem};
@@ -30,6 +31,9 @@ pub struct Engine {
     pub submits_alone: bool,
     /// Query whose answer the device holds, for the current positions.
     pub answered: Option<Query>,
+    /// The last triangles of nearest bodies that were found among instances. The next search begins with
+    /// their distance; no answer depends on them.
+    pub nearest: Option<NearestTriangles>,
     /// Milliseconds of the last build of tiles or trees.
     pub construct_ms: f64,
     /// Number of builds of tiles or trees.

@@ -3,6 +3,7 @@
 //! | step | does | in |
 //! | --- | --- | --- |
 //! | `apply` | checks the motions, moves bodies on the host and on the device | `moves.rs` |
+//! | `nearest_instances` | for the distance of rigid bodies, frames of pairs of bodies | `nearest.rs` |
 //! | `ready` | checks that all positions are known; topology of the query | `ready.rs` |
 //! | `run` | memory, tiles or trees, and the stages; in slices if memory is short | `slices.rs` |
 //! | `check_seen` | finds invalid coordinates in memory of the caller | `resident.rs` |
@@ -90,9 +91,22 @@ impl Detector {
         self.answer(&question, start)
     }
 
-    /// Answers a query at the current positions; `start` is when the call began. A frame that needs
-    /// f64 and had f32 runs again.
+    /// Answers a query at the current positions; `start` is when the call began.
     pub(super) fn answer(&mut self, question: &Question, start: Instant) -> Result<Contacts, Error> {
+        if !self.is_of_nearest_instances(&question.query) {
+            return self.answer_once(question, start);
+        }
+        match self.nearest_instances(question, start) {
+            // A limit lists pairs beyond the nearest. Trees of all triangles list none.
+            Err(Error::AnswerTooLarge { .. } | Error::OutOfMemory { .. }) => {
+                self.answer_once(question, start)
+            }
+            answered => answered,
+        }
+    }
+
+    /// Answers by one frame. One that needs f64 and had f32 runs again.
+    pub(super) fn answer_once(&mut self, question: &Question, start: Instant) -> Result<Contacts, Error> {
         self.placed.check_ends(&question.query)?;
         loop {
             let layout = self.ready(&question.query)?;

@@ -24,13 +24,16 @@ impl Detector {
             solid().filter(|body| body.kind() == kind).map(Body::element_count).sum()
         };
         let (rigid, deforming) = (triangles(BodyKind::Rigid), triangles(BodyKind::Deformable));
-        let is_whole =
-            self.portion.share == Share::WHOLE && !self.portion.is_part && !self.portion.has_slices();
-        is_whole
+        self.is_whole()
             && rigid > 0
             && rigid >= MANY_TIMES * deforming
             && solid().all(|body| body.kind() == BodyKind::Deformable || !body.self_collides())
             && self.scene.excluded.is_empty()
+    }
+
+    /// Whether a query reads the whole scene, in one slice.
+    pub(super) fn is_whole(&self) -> bool {
+        self.portion.share == Share::WHOLE && !self.portion.is_part && !self.portion.has_slices()
     }
 
     /// Chooses for the next pipeline.

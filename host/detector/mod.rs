@@ -14,6 +14,7 @@ mod instances;
 mod interrupted;
 mod layouts;
 mod moves;
+mod nearest;
 mod placed;
 pub mod plan;
 mod portion;

@@ -18,7 +18,7 @@ impl Detector {
     /// # Errors
     /// [`Error::InvalidArgument`] for invalid numbers; those of the device.
     pub fn begin(&mut self, query: &Query) -> Result<(), Error> {
-        let question = self.question(*query)?;
+        let question = self.question(self.query_of_frame(query))?;
         let begun = self.begun(&question).map(drop);
         self.ended(begun)
     }

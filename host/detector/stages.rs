@@ -33,7 +33,8 @@ impl Detector {
     }
 
     fn repeated(&mut self, query: &Query, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
-        let question = self.question(*query)?;
+        let query = self.query_of_answer(query)?;
+        let question = self.question(query)?;
         if matches!(stage, Stage::Traverse | Stage::Narrow | Stage::Order) {
             self.have_answered(&question)?;
         }
@@ -56,10 +57,12 @@ impl Detector {
     /// # Errors
     /// Those of the device.
     pub(crate) fn narrow_steps(&mut self, query: &Query) -> Result<Vec<(&'static str, f64)>, Error> {
-        let question = self.question(*query)?;
+        let of_answer = self.query_of_answer(query);
+        let query = self.ended(of_answer)?;
+        let question = self.question(query)?;
         let steps = self
             .have_answered(&question)
-            .and_then(|()| self.of_query(query, Vec::new(), |pipeline, at| pipeline.narrow_steps(at)));
+            .and_then(|()| self.of_query(&query, Vec::new(), |pipeline, at| pipeline.narrow_steps(at)));
         self.ended(steps)
     }
 
@@ -68,7 +71,7 @@ impl Detector {
         if self.engine.answered == Some(question.query) {
             return Ok(());
         }
-        self.answer(question, Instant::now()).map(drop)
+        self.answer_once(question, Instant::now()).map(drop)
     }
 
     /// Calls a function with a query's place in the pipeline; returns `none` if it has no place.
@@ -79,8 +82,9 @@ impl Detector {
         what: impl FnOnce(&mut dyn Pipeline, usize) -> Result<T, Error>,
     ) -> Result<T, Error> {
         start_threads()?;
+        let query = self.query_of_frame(query);
         let Some(pipeline) = &mut self.engine.pipeline else { return Ok(none) };
-        match pipeline.place_of(query) {
+        match pipeline.place_of(&query) {
             Some(at) => what(&mut **pipeline, at),
             None => Ok(none),
         }

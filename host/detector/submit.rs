@@ -123,7 +123,7 @@ impl Detector {
     /// [`Error::InvalidArgument`] if one needs more slices; those of a frame.
     fn answer_whole(&mut self, questions: &[Question]) -> Result<(), Error> {
         for question in questions {
-            self.answer(question, Instant::now())?;
+            self.answer_once(question, Instant::now())?;
             let slices = self.portion.slices(&question.query);
             if slices > 1 {
                 return Err(Error::InvalidArgument {

@@ -69,6 +69,8 @@ impl BodyPairs {
 pub struct BodyDistances {
     /// Largest distance of a row: a length from 0, in scene units.
     pub within: f64,
+    /// Only the nearest pair of all is wanted: rows of others may be missing.
+    pub(crate) only_nearest: bool,
     /// When bodies are put in order again.
     pub(crate) search: Search,
 }
@@ -79,7 +81,7 @@ impl BodyDistances {
 
     /// Returns a query for distances up to a limit.
     pub fn within(within: f64) -> BodyDistances {
-        BodyDistances { within, search: Search::default() }
+        BodyDistances { within, only_nearest: false, search: Search::default() }
     }
 }
 

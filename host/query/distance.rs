@@ -9,6 +9,9 @@ use crate::error::Error;
 /// do not count, even if it has self-collision. The distance is 0 if and only if some pair shares a
 /// point, which exact signs decide.
 ///
+/// A detector of rigid and fixed bodies finds them as [`BodyDistances`](super::BodyDistances) does: no
+/// mesh is placed. Others have trees of all triangles, and so has a choice of a volume or a walk.
+///
 /// ```
 /// use nearmiss::{Body, Detector, Device, Distance, Mesh, device::Backend, mesh::Positions};
 ///

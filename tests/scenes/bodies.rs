@@ -3,6 +3,7 @@
 
 mod known;
 mod laws;
+mod nearest;
 mod refused;
 
 use nearmiss::contacts::NearestTriangles;

@@ -202,6 +202,8 @@ impl Detector {
     /// # Errors
     /// Those of [`Detector::query`].
     pub fn plan(&mut self, query: &Query) -> Result<Plan, Error> {
+        let of_answer = self.query_of_answer(query);
+        let query = &self.ended(of_answer)?;
         let question = self.question(*query)?;
         let begun = self.begun(&question).map(|at| at.is_some());
         if self.ended(begun)? {

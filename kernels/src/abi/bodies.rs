@@ -10,7 +10,8 @@ use bytemuck::Zeroable;
 arguments! {
     /// Words of each relation. All begin as 0 and only grow.
     RelationWords {
-        /// The complement of the bits of an upper bound of the least distance; 0 for none.
+        /// The complement of the bits of an upper bound of the least distance; 0 for none. Or one word
+        /// for all relations: an upper bound of the least distance of any two bodies.
         least: Span<u64>,
         /// The complement of the key of a pair of triangles that share a point; 0 for none.
         touching: Span<u64>,

@@ -116,16 +116,26 @@ impl RelationWords {
         // False for the word 0, whose complement is no number.
         if bound < self.within { bound } else { self.within }
     }
+    /// The place of a relation's bound. If there is one word, it is that of all relations.
+    #[inline(always)]
+    fn place(&self, relation: u32) -> u32 {
+        if self.least.len() == 1 { 0 } else { relation }
+    }
     /// The bound of a relation, while lanes lower it.
     #[inline(always)]
     pub fn bound<L: Lane>(&self, lane: &L, relation: u32) -> f64 {
-        self.bound_of(lane.fetch_load(self.least, relation))
+        self.bound_of(lane.fetch_load(self.least, self.place(relation)))
+    }
+    /// The bound of a relation, which no lane of the launch lowers.
+    #[inline(always)]
+    pub fn still_bound<L: Lane>(&self, lane: &L, relation: u32) -> f64 {
+        self.bound_of(lane.read(self.least, self.place(relation)))
     }
     /// Lowers the bound of a relation to a length from 0, if it is not below.
     #[inline(always)]
     pub fn lower<L: Lane>(&self, lane: &L, relation: u32, to: f64) {
         if to < self.bound(lane, relation) {
-            lane.fetch_max(self.least, relation, !to.to_bits());
+            lane.fetch_max(self.least, self.place(relation), !to.to_bits());
         }
     }
 }

@@ -4,7 +4,7 @@ use super::*;
 
 /// The kinds of bodies of a scene.
 #[derive(Clone, Copy, Debug)]
-enum Kinds {
+pub(super) enum Kinds {
     Rigid,
     RigidAndFixed,
     Deformable,
@@ -12,7 +12,7 @@ enum Kinds {
 }
 
 /// A scene about a place: some spheres, boxes and single triangles, one of them without a triangle.
-fn scene(rng: &mut SmallRng, kinds: Kinds, count: usize, place: f64, filters: bool) -> Scene {
+pub(super) fn scene(rng: &mut SmallRng, kinds: Kinds, count: usize, place: f64, filters: bool) -> Scene {
     let mut scene = Scene::new();
     for i in 0..count {
         let mesh = match rng.random_range(0..5) {
@@ -45,13 +45,13 @@ fn scene(rng: &mut SmallRng, kinds: Kinds, count: usize, place: f64, filters: bo
 }
 
 /// New positions of a scene: poses, and vertices that shift and deform.
-struct Next {
+pub(super) struct Next {
     poses: Vec<(BodyId, Pose)>,
     points: Vec<(BodyId, Positions)>,
 }
 
 impl Next {
-    fn of(rng: &mut SmallRng, scene: &Scene, place: f64) -> Next {
+    pub(super) fn of(rng: &mut SmallRng, scene: &Scene, place: f64) -> Next {
         let (mut poses, mut points) = (Vec::new(), Vec::new());
         for id in scene.ids().filter(|_| rng.random_bool(0.8)).collect::<Vec<_>>() {
             let body = scene.get(id).expect("a body");
@@ -73,7 +73,7 @@ impl Next {
         Next { poses, points }
     }
 
-    fn motions(&self) -> Vec<(BodyId, Motion<'_>)> {
+    pub(super) fn motions(&self) -> Vec<(BodyId, Motion<'_>)> {
         let poses = self.poses.iter().map(|&(id, pose)| (id, Motion::Pose(pose)));
         poses.chain(self.points.iter().map(|(id, at)| (*id, Motion::Positions(at.into())))).collect()
     }

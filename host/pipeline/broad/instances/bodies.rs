@@ -23,15 +23,16 @@ use nearmiss_kernels::entry;
 enum Wanted {
     /// Bodies that share a point: all, or the first alone.
     Touching { only_first: bool },
-    /// Distances up to a limit.
-    Within(f64),
+    /// Distances up to a limit, of each two bodies or of the nearest two of all.
+    Within { within: f64, only_nearest: bool },
 }
 
 impl Wanted {
     fn of(query: &Query) -> Wanted {
         if let Query::BodyDistances(query) = query {
             // Adding zero turns -0.0 into 0.0.
-            return Wanted::Within(query.within + 0.0);
+            let within = query.within + 0.0;
+            return Wanted::Within { within, only_nearest: query.only_nearest };
         }
         let only_first = matches!(query, Query::BodyPairs(query) if query.first == Some(1));
         Wanted::Touching { only_first }
@@ -75,7 +76,7 @@ impl PairSearch {
         ];
         let close = match wanted {
             Wanted::Touching { .. } => None,
-            Wanted::Within(_) => Some(Close {
+            Wanted::Within { .. } => Some(Close {
                 descent: Descent::new(device, descent::CLOSE, room)?,
                 left: List::new(device, "triangles that may share a point", counter::TOUCHING_PAIRS, room)?,
             }),
@@ -86,7 +87,11 @@ impl PairSearch {
     /// The words, for kernels.
     fn words(&self) -> RelationWords {
         let [least, touching, first] = self.words.each_ref().map(List::entries);
-        let within = if let Wanted::Within(within) = self.wanted { within } else { 0.0 };
+        let Wanted::Within { within, only_nearest } = self.wanted else {
+            return RelationWords { least, touching, first, within: 0.0 };
+        };
+        // One bound for all relations.
+        let least = if only_nearest { least.part(0, 1) } else { least };
         RelationWords { least, touching, first, within }
     }
 
@@ -175,7 +180,7 @@ impl<R: Precision> CandidateSearch<R> for PairSearch {
                 let flags = TouchingFlags::FIRST.when(only_first);
                 self.touching(given, &args, (flags, candidates.pairs))
             }
-            Wanted::Within(_) => {
+            Wanted::Within { .. } => {
                 let of = RelationsWithinArgs { of: args, words: self.words() };
                 launch::striding::<entry::traverse_relations_within>(device, room, &of)?;
                 let close = self.close.as_ref().ok_or_else(without_lists)?;

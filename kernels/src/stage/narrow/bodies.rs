@@ -15,7 +15,8 @@
 //!          Without `any`, touching(r) is the complement of the key of the first of them.
 //!          meeting = {r : touching(r) ≠ 0}, as pairs of bodies.
 //!          least  bound(r) = the least computed distance D of the bodies of r, if none of their
-//!          triangles share a point and D ≤ the distance of the query.
+//!          triangles share a point and D ≤ the distance of the query. If all relations have one
+//!          word, D is the least of all of them.
 //!          first(r) = the complement of the key of the first candidate at D; 0 if there is none.
 //!          nearest = {(0, p, q) : key(p, q) of touching(r)} of those that were left, and
 //!          {(D, p, q) : key(p, q) of first(r)} of the others.
@@ -129,7 +130,7 @@ pub fn first<B: Block>(block: &mut B, args: &BodiesNarrowArgs) {
     each(block, args, |lane, given| {
         let known = lane.fetch_load(args.words.first, given.relation);
         if known < given.key && !given.bodies_touch(lane, args) {
-            let best = args.words.bound_of(lane.read(args.words.least, given.relation));
+            let best = args.words.still_bound(lane, given.relation);
             let corners = given.corners(lane, args);
             if gap(&corners[0], &corners[1]) <= best && apart(&corners) == best {
                 lane.fetch_max(args.words.first, given.relation, given.key);

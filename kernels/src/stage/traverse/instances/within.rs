@@ -7,7 +7,7 @@
 //! Reads    a relation and its bound; two nodes; 32 triangles of each tile.
 //! Writes   bounds; candidates, a pair of tiles and two places, each once, in no order.
 //! Before   relations and pairs are listed. A bound is none, or at least the least distance of its
-//!          two bodies, as computed. Bodies that are known to share a point have a word that is not 0
+//!          two bodies, as computed; of any two, if all relations have one word. Bodies that are known to share a point have a word that is not 0
 //!          ([`super::touching`]), and nothing is read or written for them.
 //! After    the same of bounds. They are at most the largest distance of volumes of a pair, and
 //!          the least distance of first corners of a pair of tiles.

@@ -1,0 +1,189 @@
+//! The nearest two bodies of a scene of rigid and fixed bodies: the least of the distances of pairs of
+//! bodies within a limit, which grows until a pair is within it.
+//!
+//! Meshes are kept once, nothing is fitted but a box a body, and a limit leaves out all bodies that
+//! are farther. One bound for all pairs ends the work of those that are not the nearest. The first limit follows from the triangles that were nearest last, where they are now.
+//! It is a cost and no part of the answer: every limit with a row has the nearest pair in its rows.
+
+use super::Detector;
+use super::question::Question;
+use crate::contacts::{Contacts, Keep, NearestTriangles, Rows};
+use crate::error::Error;
+use crate::pipeline::Stages;
+use crate::query::{BodyDistances, Query, Search};
+use crate::scene::{Body, BodyKind, Scene};
+use nearmiss_kernels::math::Vec3;
+use nearmiss_kernels::prim::nearest::Nearest;
+use std::time::Instant;
+
+/// Factor of a distance, so that roundings of places leave it within the limit.
+const FARTHER: f64 = 1.0 + 1e-9;
+/// Limits that are twice as large as the one before. Then their ratio is squared each time.
+const DOUBLED: usize = 16;
+
+/// The limits of a search: it ends at the first with a row. The last one has all pairs.
+fn limits(first: f64, near: f64) -> impl Iterator<Item = f64> {
+    let mut next = Some((first, 2.0, 0));
+    std::iter::from_fn(move || {
+        let (limit, ratio, turns) = next?;
+        let ratio = if turns < DOUBLED { ratio } else { ratio * ratio };
+        let larger = (limit * ratio).max(near).min(f64::MAX);
+        next = (limit < f64::MAX).then_some((larger, ratio, turns + 1));
+        Some(limit)
+    })
+}
+
+/// The corners of a triangle of a body at the start of the step.
+fn corners(body: &Body, triangle: usize) -> Option<[Vec3<f64>; 3]> {
+    let element = body.elements().get(triangle)?;
+    let mut corners = [Vec3([0.0; 3]); 3];
+    for (corner, &vertex) in corners.iter_mut().zip(element) {
+        let own = body.positions_t0().get_f64(vertex as usize)?;
+        *corner = Vec3(if body.kind() == BodyKind::Rigid { body.poses()[0].apply(own) } else { own });
+    }
+    Some(corners)
+}
+
+/// The distance of two triangles of bodies, where they are now.
+fn distance(scene: &Scene, nearest: &NearestTriangles) -> Option<f64> {
+    let of = |side: usize| corners(scene.get(nearest.bodies[side])?, nearest.triangles[side] as usize);
+    Some(Nearest::of(&of(0)?, &of(1)?).distance)
+}
+
+/// The nearest of rows. Of those with the least distance, the one whose triangles are first in the
+/// scene.
+fn nearest(rows: &[NearestTriangles]) -> Option<NearestTriangles> {
+    let first = |row: &NearestTriangles| {
+        let ([a, b], [p, q]) = (row.bodies, row.triangles);
+        [(a, p), (b, q)]
+    };
+    let order = |a: &NearestTriangles, b: &NearestTriangles| {
+        a.distance.total_cmp(&b.distance).then_with(|| first(a).cmp(&first(b)))
+    };
+    rows.iter().min_by(|a, b| order(a, b)).copied()
+}
+
+impl Detector {
+    /// Whether the nearest bodies are found among instances: all bodies are rigid or fixed, the host has
+    /// their poses, and no choice of trees is made.
+    pub(super) fn is_of_nearest_instances(&self, query: &Query) -> bool {
+        let Query::Distance(distance) = query else { return false };
+        let is_solid = |body: &Body| {
+            let has_pose = body.kind() != BodyKind::Deformable && !body.is_device_resident();
+            has_pose || body.element_count() == 0
+        };
+        distance.search == (Search { rebuild: distance.search.rebuild, ..Search::default() })
+            && self.is_whole()
+            && self.scene.bodies().iter().all(is_solid)
+    }
+
+    /// The query of the frame that answers a query: for the nearest of instances, that of the last limit,
+    /// or one without a length before there is one.
+    pub(super) fn query_of_frame(&self, query: &Query) -> Query {
+        match (query, self.engine.answered) {
+            (Query::Distance(_), Some(Query::BodyDistances(last)))
+                if last.only_nearest && self.is_of_nearest_instances(query) =>
+            {
+                last.into()
+            }
+            (Query::Distance(distance), _) if self.is_of_nearest_instances(query) => {
+                BodyDistances { within: 0.0, only_nearest: true, search: distance.search }.into()
+            }
+            _ => *query,
+        }
+    }
+
+    /// The same, of an answer that the device holds: it is made if there is none.
+    ///
+    /// # Errors
+    /// As of [`Detector::answer`].
+    pub(super) fn query_of_answer(&mut self, query: &Query) -> Result<Query, Error> {
+        if self.is_of_nearest_instances(query) && self.engine.answered != Some(self.query_of_frame(query)) {
+            let question = self.question(*query)?;
+            self.answer(&question, Instant::now())?;
+        }
+        Ok(self.query_of_frame(query))
+    }
+
+    /// The limits of the next search.
+    fn limits(&self) -> impl Iterator<Item = f64> + use<> {
+        let corner = |body: &Body| corners(body, 0).map(|corners| corners[0]);
+        let corners: Vec<Vec3<f64>> = self.scene.bodies().iter().filter_map(corner).collect();
+        let apart = |pair: &[Vec3<f64>]| (pair[0] - pair[1]).dot(pair[0] - pair[1]).sqrt();
+        let apart = corners.windows(2).map(apart);
+        let near = apart.filter(|&d| d > 0.0 && d < f64::INFINITY).min_by(f64::total_cmp).unwrap_or(1.0);
+        let last = self.engine.nearest.as_ref().and_then(|nearest| distance(&self.scene, nearest));
+        limits(last.map_or(near, |last| (FARTHER * last).min(near)), near)
+    }
+
+    /// The nearest two bodies of a scene whose bodies can be read as instances.
+    ///
+    /// # Errors
+    /// As of [`Detector::answer`].
+    pub(super) fn nearest_instances(
+        &mut self,
+        question: &Question,
+        start: Instant,
+    ) -> Result<Contacts, Error> {
+        let Query::Distance(distance) = question.query else {
+            return Err(Error::Bug { what: "nearest bodies are the answer to a distance query".into() });
+        };
+        let mut all = Vec::new();
+        for within in self.limits() {
+            let of_pairs =
+                self.question(BodyDistances { within, only_nearest: true, search: distance.search }.into())?;
+            let mut round = self.answer_once(&of_pairs, start)?;
+            let found = match &round.rows {
+                Rows::BodyDistances(rows) => nearest(rows),
+                _ => return Err(Error::Bug { what: "distances of bodies have other rows".into() }),
+            };
+            round.rows = Rows::Distance(found);
+            round.query = question.query;
+            all.push(round);
+            if let Some(found) = found {
+                self.engine.nearest = Some(found);
+                break;
+            }
+        }
+        let device = self.device.clone();
+        let keep: Keep = &|bytes, fill| device.keep_filled(bytes, fill);
+        let mut whole = Contacts::merged(all, |a, b| a + b, keep, &device.looks())?;
+        whole.stats.slices = 1;
+        let wall = start.elapsed().as_secs_f64() * 1e3;
+        let stages = whole.stats.stages;
+        whole.stats.stages = Stages { construct: self.engine.construct_ms, wall, ..stages };
+        Ok(whole)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_grow_to_all_in_few_turns() {
+        for (first, near) in [(0.0, 1e-3), (1.0, 0.1), (5e-324, 5e-324), (1e300, 1e300), (f64::MAX, 1.0)] {
+            let all: Vec<f64> = limits(first, near).collect();
+            assert_eq!((all[0], all.last()), (first, Some(&f64::MAX)), "{first} {near}");
+            assert!(all.is_sorted_by(|a, b| a < b) && all.len() < 40, "{all:?}");
+            // A search that begins below the distance ends at most at twice of it, near its beginning.
+            let doubled = all.windows(2).take(DOUBLED).skip(1).all(|w| w[1] <= 2.0 * w[0].max(near));
+            assert!(doubled, "{all:?}");
+        }
+    }
+
+    #[test]
+    fn the_first_of_equal_rows_is_nearest() {
+        use crate::scene::BodyId;
+        let row = |[a, b]: [u32; 2], distance| NearestTriangles {
+            bodies: [BodyId(0), BodyId(a)],
+            triangles: [b, 0],
+            distance,
+            weights: [[1.0, 0.0, 0.0]; 2],
+            points: [[0.0; 3]; 2],
+        };
+        let rows = [row([1, 0], 2.0), row([2, 5], 1.0), row([3, 4], 1.0), row([4, 4], 1.0)];
+        assert_eq!(nearest(&rows).map(|row| row.bodies[1]), Some(BodyId(3)));
+        assert_eq!(nearest(&[]), None);
+    }
+}
