@@ -1,5 +1,7 @@
 """Many rigid bodies: which touch, and how far apart the near ones are, by nearmiss, Coal and FCL. See README.md.
 
+Each program has all frames in a row, then all programs take each frame in turns, with cold caches.
+
     python bodies.py [--bodies N] [--frames N] [--threads N] [--out FILE.csv]
 """
 
@@ -59,6 +61,10 @@ class Coal:
     def place(self, places, turns):
         for body, rotation, place in zip(self.objects, turns, places):
             body.setTransform(coal.Transform3s(rotation, place))
+
+    def find_near(self):
+        """The pairs of boxes of all questions, which Coal's questions are about."""
+        for body in self.objects:
             body.computeAABB()
         boxes = [body.getAABB() for body in self.objects]
         self.low, self.high = np.array([box.min_ for box in boxes]), np.array([box.max_ for box in boxes])
@@ -145,6 +151,46 @@ class Nearmiss:
         return len(found), float(np.sum(found.distances))
 
 
+class Clock:
+    """Times and answers of all programs."""
+
+    def __init__(self):
+        self.times, self.answers = {}, {}
+
+    def time(self, order, question, program, act):
+        start = time.perf_counter()
+        value = act()
+        self.times.setdefault((question, order, program.name), []).append((time.perf_counter() - start) * 1e6)
+        self.answers.setdefault((question, order, program.name), []).append(value)
+
+    def frame(self, order, program, places, quaternions, turns, pairs):
+        """All questions about one frame. FCL gets Coal's pairs of boxes."""
+        own = quaternions if isinstance(program, Nearmiss) else turns
+        self.time(order, "poses", program, lambda: program.place(places, own))
+        if isinstance(program, Coal):
+            self.time(order, "pairs of boxes", program, program.find_near)
+        if isinstance(program, Fcl):
+            self.time(order, "touching", program, lambda: sum(n > 0 for n in program.count(pairs, 1)))
+            self.time(order, "crossing triangles", program, lambda: sum(program.count(pairs, 10**6)))
+            return
+        self.time(order, "touching", program, program.touching)
+        self.time(order, "crossing triangles", program, program.crossing)
+        for within in WITHIN:
+            self.time(order, f"distances within {within}", program, lambda: program.distances(within))
+
+    def rows(self):
+        for (question, order, program), values in sorted(self.times.items(), key=lambda item: item[0][:2]):
+            found = self.answers[question, order, program]
+            mean = lambda of: statistics.mean(of(value) for value in found)
+            count = distance = ""
+            if isinstance(found[0], tuple):
+                count, distance = f"{mean(lambda v: v[0]):.2f}", f"{mean(lambda v: v[1]):.9g}"
+            elif found[0] is not None:
+                count = f"{mean(lambda v: v):.2f}"
+            # The first frame builds.
+            yield [question, order, program, f"{statistics.median(values[1:]):.0f}", count, distance]
+
+
 def main():
     arguments = argparse.ArgumentParser(description=__doc__)
     arguments.add_argument("--bodies", type=int, default=200)
@@ -155,43 +201,25 @@ def main():
     meshes = [bumpy(seed) for seed in range(MESHES)]
     which = np.random.default_rng(0).integers(0, MESHES, args.bodies)
     threads = sorted({1, args.threads})
-    all_of = [Nearmiss(meshes, which, n) for n in threads] + [Coal(meshes, which), Fcl(meshes, which)]
-    times, answers = {}, {}
-
-    def clock(program, question, act):
-        start = time.perf_counter()
-        value = act()
-        times.setdefault((question, program.name), []).append((time.perf_counter() - start) * 1e6)
-        answers.setdefault((question, program.name), []).append(value)
-
-    for frame, (places, quaternions) in enumerate(poses(args.bodies, args.frames)):
-        turns = matrices(quaternions)
+    coal = Coal(meshes, which)
+    all_of = [Nearmiss(meshes, which, n) for n in threads] + [coal, Fcl(meshes, which)]
+    frames = [(places, turns, matrices(turns)) for places, turns in poses(args.bodies, args.frames)]
+    pairs = []
+    for places, _, turns in frames:
+        coal.place(places, turns)
+        coal.find_near()
+        pairs.append(coal.near[0])
+    clock = Clock()
+    for program in all_of:
+        for frame, near in zip(frames, pairs):
+            clock.frame("in a row", program, *frame, near)
+    for frame, near in zip(frames, pairs):
         for program in all_of:
-            own = quaternions if isinstance(program, Nearmiss) else turns
-            clock(program, "poses", lambda: program.place(places, own))
-            if isinstance(program, Fcl):
-                pairs = all_of[-2].near[0]
-                clock(program, "touching", lambda: sum(n > 0 for n in program.count(pairs, 1)))
-                clock(program, "crossing triangles", lambda: sum(program.count(pairs, 10**6)))
-                continue
-            clock(program, "touching", program.touching)
-            clock(program, "crossing triangles", program.crossing)
-            for within in WITHIN:
-                clock(program, f"distances within {within}", lambda: program.distances(within))
-    told = [["question", "program", "microseconds", "count", "distances"]]
-    for (question, program), values in times.items():
-        # The first frame builds.
-        found = answers[question, program]
-        mean = lambda of: statistics.mean(of(value) for value in found)
-        count = distance = ""
-        if isinstance(found[0], tuple):
-            count, distance = f"{mean(lambda v: v[0]):.2f}", f"{mean(lambda v: v[1]):.9g}"
-        elif found[0] is not None:
-            count = f"{mean(lambda v: v):.2f}"
-        told.append([question, program, f"{statistics.median(values[1:]):.0f}", count, distance])
-    told[1:] = sorted(told[1:], key=lambda row: row[0])
+            clock.frame("in turns", program, *frame, near)
     with open(args.out, "w", newline="") if args.out else sys.stdout as file:
-        csv.writer(file, lineterminator="\n").writerows(told)
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(["question", "order", "program", "microseconds", "count", "distances"])
+        rows.writerows(clock.rows())
 
 
 if __name__ == "__main__":

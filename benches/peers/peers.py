@@ -4,6 +4,7 @@
 """
 
 import argparse
+import itertools
 import json
 import statistics
 import subprocess
@@ -99,17 +100,21 @@ def ask_parry(program, files, repeat):
 
 
 def ask_nearmiss(program, files, repeat):
+    """Both as meshes that may deform, then as rigid bodies."""
+    rigid = Path(files[0]).parent / "rigid.toml"
+    rigid.write_text("".join(f"[[body]]\nmesh = {Path(file).name!r}\nkind = \"rigid\"\n" for file in files))
     rows = []
-    for threads in ("1", "2"):
-        command = [program, "detect", files[0], "--with", files[1], "--distance", "--backend", "cpu", "--json"]
+    kinds = [("", [files[0], "--with", files[1]]), (" rigid", [str(rigid)])]
+    for (kind, given), threads in itertools.product(kinds, ("1", "2")):
+        command = [program, "detect", *given, "--distance", "--backend", "cpu", "--json"]
         command += ["--threads", threads, "--repeat", str(repeat)]
         told = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
         ms = told["ms"]
         rows.append(
             answer(
-                f"**nearmiss**, {threads} thread" + "s" * (threads != "1"),
+                f"**nearmiss{kind}**, {threads} thread" + "s" * (threads != "1"),
                 told["nearest"]["distance"],
-                ms["construct"],
+                None if kind else ms["construct"],
                 ms["fit"] + ms["refit"],
                 ms["traverse"] + ms["narrow"],
             )
@@ -164,7 +169,7 @@ def main():
                 times.append([label, row["name"], told(row["build"]), told(row["refit"]), told(row["query"]), said])
         for scene in scenes.hard():
             truth, rows = ask_all(args, Path(folder), *scene)
-            rows = rows[1:]
+            rows = [row for row in rows if not row["name"].endswith(", 1 thread")]
             names = [row["name"].split(",")[0] if "nearmiss" in row["name"] else row["name"] for row in rows]
             values.append([scene[0], f"{float(verdict.root(truth)):.4g}"] + [verdict.of(r["distance"], truth) for r in rows])
             print(*values[-1], file=sys.stderr)
