@@ -31,9 +31,9 @@ pub struct Engine {
     pub submits_alone: bool,
     /// Query whose answer the device holds, for the current positions.
     pub answered: Option<Query>,
-    /// The last triangles of nearest bodies that were found among instances. The next search begins with
-    /// their distance; no answer depends on them.
-    pub nearest: Option<NearestTriangles>,
+    /// The last triangles of nearest bodies that were found among instances; within, `None` if no two
+    /// bodies may meet. The next search begins there; no answer depends on it.
+    pub nearest: Option<Option<NearestTriangles>>,
     /// Milliseconds of the last build of tiles or trees.
     pub construct_ms: f64,
     /// Number of builds of tiles or trees.
@@ -85,7 +85,7 @@ impl Engine {
     /// Drops the pipeline and the layouts, after the bodies changed.
     pub fn drop_all(&mut self) {
         self.drop_pipeline();
-        self.layouts = Layouts::default();
+        (self.layouts, self.nearest) = (Layouts::default(), None);
     }
 
     /// Drops the pipeline with all its memory.

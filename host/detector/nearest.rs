@@ -18,6 +18,9 @@ use std::time::Instant;
 
 /// Factor of a distance, so that roundings of places leave it within the limit.
 const FARTHER: f64 = 1.0 + 1e-9;
+/// Bodies before each in the scene's list whose distance from it is seen before the first limit. The
+/// next link of a chain is mostly left out.
+const NEIGHBOURS: usize = 2;
 /// Limits that are twice as large as the one before. Then their ratio is squared each time.
 const DOUBLED: usize = 16;
 
@@ -50,7 +53,7 @@ fn distance(scene: &Scene, nearest: &NearestTriangles) -> Option<f64> {
     Some(Nearest::of(&of(0)?, &of(1)?).distance)
 }
 
-/// The nearest of rows. Of those with the least distance, the one whose triangles are first in the
+/// The nearest of rows: among those with the least distance, the one whose triangles are first in the
 /// scene.
 fn nearest(rows: &[NearestTriangles]) -> Option<NearestTriangles> {
     let first = |row: &NearestTriangles| {
@@ -106,14 +109,29 @@ impl Detector {
     }
 
     /// The limits of the next search.
-    fn limits(&self) -> impl Iterator<Item = f64> + use<> {
-        let corner = |body: &Body| corners(body, 0).map(|corners| corners[0]);
-        let corners: Vec<Vec3<f64>> = self.scene.bodies().iter().filter_map(corner).collect();
-        let apart = |pair: &[Vec3<f64>]| (pair[0] - pair[1]).dot(pair[0] - pair[1]).sqrt();
-        let apart = corners.windows(2).map(apart);
-        let near = apart.filter(|&d| d > 0.0 && d < f64::INFINITY).min_by(f64::total_cmp).unwrap_or(1.0);
-        let last = self.engine.nearest.as_ref().and_then(|nearest| distance(&self.scene, nearest));
-        limits(last.map_or(near, |last| (FARTHER * last).min(near)), near)
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn limits(&mut self, query: &Query) -> Result<impl Iterator<Item = f64> + use<>, Error> {
+        let layout = self.layout(query)?;
+        let bodies = self.scene.bodies();
+        let first: Vec<_> = bodies.iter().map(|body| Some(corners(body, 0)?[0])).collect();
+        let apart = |a: usize, b: usize| {
+            let d = first[a]? - first[b]?;
+            Some(d.dot(d).sqrt())
+        };
+        let pairs = (0..bodies.len()).flat_map(|b| (b.saturating_sub(NEIGHBOURS)..b).map(move |a| (a, b)));
+        let near = pairs.fold(f64::INFINITY, |near, (a, b)| match apart(a, b) {
+            Some(d) if d > 0.0 && d < near && layout.tests(a, b) => d,
+            _ => near,
+        });
+        let near = if near < f64::INFINITY { near } else { 1.0 };
+        let first = match &self.engine.nearest {
+            None => near,
+            Some(None) => f64::MAX,
+            Some(Some(last)) => distance(&self.scene, last).map_or(near, |last| (FARTHER * last).min(near)),
+        };
+        Ok(limits(first, near))
     }
 
     /// The nearest two bodies of a scene whose bodies can be read as instances.
@@ -129,7 +147,7 @@ impl Detector {
             return Err(Error::Bug { what: "nearest bodies are the answer to a distance query".into() });
         };
         let mut all = Vec::new();
-        for within in self.limits() {
+        for within in self.limits(&question.query)? {
             let of_pairs =
                 self.question(BodyDistances { within, only_nearest: true, search: distance.search }.into())?;
             let mut round = self.answer_once(&of_pairs, start)?;
@@ -140,8 +158,8 @@ impl Detector {
             round.rows = Rows::Distance(found);
             round.query = question.query;
             all.push(round);
-            if let Some(found) = found {
-                self.engine.nearest = Some(found);
+            self.engine.nearest = Some(found);
+            if found.is_some() {
                 break;
             }
         }

@@ -216,7 +216,7 @@ impl Query {
             pairs.first = None;
         }
         if let Query::BodyDistances(distances) = &mut shape {
-            distances.within = BodyDistances::WITHIN;
+            (distances.within, distances.only_nearest) = (BodyDistances::WITHIN, false);
         }
         if let Some(certified) = shape.certified_mut() {
             let min_separation = if certified.is_apart() { 1.0 } else { 0.0 };

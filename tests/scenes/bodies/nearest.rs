@@ -171,3 +171,23 @@ fn no_mesh_is_placed_before_the_first_answer() {
     assert_eq!(own.0, of_pairs.0);
     assert!(3 * own.1 < trees.1, "{own:?} {of_pairs:?} {trees:?}");
 }
+
+/// Robots in worlds of their own, in one place: neighbours in the scene's list may not meet.
+#[test]
+fn worlds_in_one_place_have_the_nearest_of_one() {
+    let mut scene = Scene::new();
+    let mut motions = Vec::new();
+    for world in 0..6 {
+        for link in 0..3 {
+            let filter = CollisionFilter { environment: Some(world), ..CollisionFilter::default() };
+            let id = scene.add(Body::rigid(cuboid([-0.5; 3], [0.5; 3])).with_filter(filter));
+            let by = f64::from(world) * 1e-12;
+            motions.push((id, Motion::Pose(Pose::at([(3.0 + by) * f64::from(link), by, 0.0]))));
+        }
+    }
+    let ids: Vec<BodyId> = scene.ids().collect();
+    let links: Vec<[BodyId; 2]> = ids.windows(2).map(|pair| [pair[0], pair[1]]).collect();
+    scene.leave_out(&links).expect("bodies");
+    let found = Both::new(&scene).alike(&motions).expect("alike").expect("a distance");
+    assert!((found - 5.0).abs() < 1e-9, "{found}");
+}
