@@ -151,10 +151,10 @@ impl Detector {
             let of_pairs =
                 self.question(BodyDistances { within, only_nearest: true, search: distance.search }.into())?;
             let mut round = self.answer_once(&of_pairs, start)?;
-            let found = match &round.rows {
-                Rows::BodyDistances(rows) => nearest(rows),
-                _ => return Err(Error::Bug { what: "distances of bodies have other rows".into() }),
+            let Rows::BodyDistances(rows) = &round.rows else {
+                return Err(Error::Bug { what: "distances of bodies have other rows".into() });
             };
+            let found = nearest(rows);
             round.rows = Rows::Distance(found);
             round.query = question.query;
             all.push(round);
