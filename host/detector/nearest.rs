@@ -2,8 +2,9 @@
 //! bodies within a limit, which grows until a pair is within it.
 //!
 //! Meshes are kept once, nothing is fitted but a box a body, and a limit leaves out all bodies that
-//! are farther. One bound for all pairs ends the work of those that are not the nearest. The first limit follows from the triangles that were nearest last, where they are now.
-//! It is a cost and no part of the answer: every limit with a row has the nearest pair in its rows.
+//! are farther. One bound for all pairs ends the work of those that are not the nearest. The first
+//! limit follows from the triangles that were nearest last, where they are now. It is a cost and no part
+//! of the answer: every limit with a row has the nearest pair in its rows.
 
 use super::Detector;
 use super::question::Question;
@@ -146,7 +147,7 @@ impl Detector {
         let Query::Distance(distance) = question.query else {
             return Err(Error::Bug { what: "nearest bodies are the answer to a distance query".into() });
         };
-        let mut all = Vec::new();
+        let (mut all, mut found) = (Vec::new(), None);
         for within in self.limits(&question.query)? {
             let of_pairs =
                 self.question(BodyDistances { within, only_nearest: true, search: distance.search }.into())?;
@@ -154,15 +155,16 @@ impl Detector {
             let Rows::BodyDistances(rows) = &round.rows else {
                 return Err(Error::Bug { what: "distances of bodies have other rows".into() });
             };
-            let found = nearest(rows);
+            found = nearest(rows);
             round.rows = Rows::Distance(found);
             round.query = question.query;
             all.push(round);
-            self.engine.nearest = Some(found);
             if found.is_some() {
                 break;
             }
         }
+        // Only now: after an error nothing is known of limits that were not taken.
+        self.engine.nearest = Some(found);
         let device = self.device.clone();
         let keep: Keep = &|bytes, fill| device.keep_filled(bytes, fill);
         let mut whole = Contacts::merged(all, |a, b| a + b, keep, &device.looks())?;
