@@ -11,9 +11,8 @@ use super::question::Question;
 use crate::contacts::{Contacts, Keep, NearestTriangles, Rows};
 use crate::error::Error;
 use crate::pipeline::Stages;
-use crate::query::{BodyDistances, Query, Search};
+use crate::query::{BodyDistances, Query};
 use crate::scene::{Body, BodyKind, Scene};
-use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::nearest::Nearest;
 use std::time::Instant;
 
@@ -37,20 +36,9 @@ fn limits(first: f64, near: f64) -> impl Iterator<Item = f64> {
     })
 }
 
-/// The corners of a triangle of a body at the start of the step.
-fn corners(body: &Body, triangle: usize) -> Option<[Vec3<f64>; 3]> {
-    let element = body.elements().get(triangle)?;
-    let mut corners = [Vec3([0.0; 3]); 3];
-    for (corner, &vertex) in corners.iter_mut().zip(element) {
-        let own = body.positions_t0().get_f64(vertex as usize)?;
-        *corner = Vec3(if body.kind() == BodyKind::Rigid { body.poses()[0].apply(own) } else { own });
-    }
-    Some(corners)
-}
-
 /// The distance of two triangles of bodies, where they are now.
 fn distance(scene: &Scene, nearest: &NearestTriangles) -> Option<f64> {
-    let of = |side: usize| corners(scene.get(nearest.bodies[side])?, nearest.triangles[side] as usize);
+    let of = |side: usize| scene.get(nearest.bodies[side])?.corners(nearest.triangles[side] as usize);
     Some(Nearest::of(&of(0)?, &of(1)?).distance)
 }
 
@@ -76,24 +64,19 @@ impl Detector {
             let has_pose = body.kind() != BodyKind::Deformable && !body.is_device_resident();
             has_pose || body.element_count() == 0
         };
-        distance.search == (Search { rebuild: distance.search.rebuild, ..Search::default() })
-            && self.is_whole()
-            && self.scene.bodies().iter().all(is_solid)
+        !distance.search.is_chosen() && self.is_whole() && self.scene.bodies().iter().all(is_solid)
     }
 
     /// The query of the frame that answers a query: for the nearest of instances, that of the last limit,
     /// or one without a length before there is one.
     pub(super) fn query_of_frame(&self, query: &Query) -> Query {
-        match (query, self.engine.answered) {
-            (Query::Distance(_), Some(Query::BodyDistances(last)))
-                if last.only_nearest && self.is_of_nearest_instances(query) =>
-            {
-                last.into()
-            }
-            (Query::Distance(distance), _) if self.is_of_nearest_instances(query) => {
-                BodyDistances { within: 0.0, only_nearest: true, search: distance.search }.into()
-            }
-            _ => *query,
+        let Query::Distance(distance) = query else { return *query };
+        if !self.is_of_nearest_instances(query) {
+            return *query;
+        }
+        match self.engine.answered {
+            Some(Query::BodyDistances(last)) if last.only_nearest => last.into(),
+            _ => BodyDistances { within: 0.0, only_nearest: true, search: distance.search }.into(),
         }
     }
 
@@ -116,7 +99,7 @@ impl Detector {
     fn limits(&mut self, query: &Query) -> Result<impl Iterator<Item = f64> + use<>, Error> {
         let layout = self.layout(query)?;
         let bodies = self.scene.bodies();
-        let first: Vec<_> = bodies.iter().map(|body| Some(corners(body, 0)?[0])).collect();
+        let first: Vec<_> = bodies.iter().map(|body| Some(body.corners(0)?[0])).collect();
         let apart = |a: usize, b: usize| {
             let d = first[a]? - first[b]?;
             Some(d.dot(d).sqrt())

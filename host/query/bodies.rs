@@ -87,7 +87,7 @@ impl BodyDistances {
 
 /// Refuses choices of how candidates are found: there is one way.
 fn check_search(search: &Search, name: &str) -> Result<(), Error> {
-    if *search == (Search { rebuild: search.rebuild, ..Search::default() }) {
+    if !search.is_chosen() {
         return Ok(());
     }
     Err(Error::InvalidArgument {

@@ -24,6 +24,11 @@ impl Search {
         self.rebuild != Some(Rebuild::Manual)
     }
 
+    /// Returns whether a choice is made of how candidates are found.
+    pub(crate) fn is_chosen(&self) -> bool {
+        *self != Search { rebuild: self.rebuild, ..Search::default() }
+    }
+
     /// Returns whether a choice is made that only trees have.
     pub(crate) fn is_of_trees(&self) -> bool {
         self.refit.is_some() || self.traversal.is_some()

@@ -278,6 +278,18 @@ impl Body {
         Some([degrees, farthest * 2.0 * (angle / 4.0).sin().powi(2)])
     }
 
+    /// The corners of an element at the start of the step, if the host has them; `None` for an element
+    /// that does not exist.
+    pub(crate) fn corners(&self, element: usize) -> Option<[Vec3<f64>; 3]> {
+        let element = self.elements().get(element)?;
+        let mut corners = [Vec3([0.0; 3]); 3];
+        for (corner, &vertex) in corners.iter_mut().zip(element) {
+            let at = self.positions_t0.get_f64(vertex as usize)?;
+            *corner = Vec3(if self.kind == BodyKind::Rigid { self.poses()[0].apply(at) } else { at });
+        }
+        Some(corners)
+    }
+
     /// Box around a rigid body at both ends of the step, if the host has its poses; `None` for
     /// others.
     pub(crate) fn posed_box(&self) -> Option<Bounds> {

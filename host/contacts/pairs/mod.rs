@@ -9,7 +9,7 @@ mod whole;
 pub use place::END_ERROR;
 
 use super::TrianglePair;
-use crate::scene::{Body, BodyId, BodyKind};
+use crate::scene::{Body, BodyId};
 use common::Corners;
 use nearmiss_kernels::math::Vec3;
 
@@ -123,17 +123,8 @@ impl PairGeometry {
     /// Computes the geometry of two triangles of these bodies at the start of the step. `None` if
     /// they do not exist or share no point.
     pub(crate) fn of_bodies(pair: &TrianglePair, bodies: &[Body]) -> Option<PairGeometry> {
-        let corners = |side: usize| {
-            let body = bodies.get(pair.bodies[side].index())?;
-            let face = body.elements().get(pair.triangles[side] as usize)?;
-            let mut corners = [Vec3([0.0; 3]); 3];
-            for (corner, &vertex) in corners.iter_mut().zip(face) {
-                let at = body.positions_t0().get_f64(vertex as usize)?;
-                let is_rigid = body.kind() == BodyKind::Rigid;
-                *corner = Vec3(if is_rigid { body.poses()[0].apply(at) } else { at });
-            }
-            Some(corners)
-        };
+        let corners =
+            |side: usize| bodies.get(pair.bodies[side].index())?.corners(pair.triangles[side] as usize);
         PairGeometry::of(pair, [&corners(0)?, &corners(1)?])
     }
 }
